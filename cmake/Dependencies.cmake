@@ -1,0 +1,40 @@
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(PNG REQUIRED)
+find_package(PkgConfig REQUIRED)
+
+pkg_check_modules(ODE REQUIRED IMPORTED_TARGET ode)
+add_library(tubebin::ode ALIAS PkgConfig::ODE)
+
+pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)
+add_library(tubebin::osmesa ALIAS PkgConfig::OSMESA)
+
+# Embree 4 (Ubuntu 24.04) or 3 (Debian 12); src/scan/embree.hpp is the one place that tells them apart.
+find_package(embree 4 QUIET)
+if(embree_FOUND)
+  set(TUBEBIN_EMBREE_MAJOR 4)
+else()
+  find_package(embree 3 REQUIRED)
+  set(TUBEBIN_EMBREE_MAJOR 3)
+endif()
+add_library(tubebin_embree INTERFACE)
+target_link_libraries(tubebin_embree INTERFACE embree)
+target_compile_definitions(tubebin_embree INTERFACE TUBEBIN_EMBREE_MAJOR=${TUBEBIN_EMBREE_MAJOR})
+add_library(tubebin::embree ALIAS tubebin_embree)
+
+# PCL's own CMake package pulls in VTK, Qt and MPI through its visualization parts; the parts used here need none
+# of them, so they are found by pkg-config-free names and headers alone.
+find_path(PCL_INCLUDE_DIR pcl/pcl_config.h PATH_SUFFIXES pcl-1.13 pcl-1.14 pcl-1.15 pcl-1.12 REQUIRED)
+add_library(tubebin_pcl INTERFACE)
+target_include_directories(tubebin_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIR})
+target_link_libraries(tubebin_pcl INTERFACE Eigen3::Eigen)
+foreach(part common io io_ply octree kdtree search features filters sample_consensus segmentation)
+  find_library(PCL_${part}_LIBRARY pcl_${part} REQUIRED)
+  target_link_libraries(tubebin_pcl INTERFACE ${PCL_${part}_LIBRARY})
+endforeach()
+add_library(tubebin::pcl ALIAS tubebin_pcl)

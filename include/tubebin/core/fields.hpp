@@ -1,0 +1,49 @@
+/// One description of an options struct serves for reading it from YAML, writing it back, and documenting it:
+/// a `describe(Fields&, Options&)` beside the struct names each field once, with its limits and its effect.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "tubebin/core/geometry.hpp"
+
+namespace tubebin {
+
+/// Closed interval of the values that a number may take. NaN is never inside.
+struct Limits {
+  double min = -std::numeric_limits<double>::max();
+  double max = std::numeric_limits<double>::max();
+};
+
+/// A visitor over the fields of an options struct. `unit` is "" for a pure number; `doc` says what it does.
+class Fields {
+ public:
+  virtual ~Fields() = default;
+
+  virtual void number(const char* key, double& value, Limits limits, const char* unit, const char* doc) = 0;
+  virtual void integer(const char* key, int& value, Limits limits, const char* unit, const char* doc) = 0;
+  virtual void seed(const char* key, std::uint64_t& value, const char* doc) = 0;
+  virtual void flag(const char* key, bool& value, const char* doc) = 0;
+  virtual void text(const char* key, std::string& value, const char* doc) = 0;
+  virtual void vector(const char* key, Vec3& value, Limits limits, const char* unit, const char* doc) = 0;
+  virtual void integers(const char* key, std::vector<int>& value, Limits limits, const char* doc) = 0;
+  /// `value` is an index into `names`.
+  virtual void choice(const char* key, int& value, const std::vector<std::string>& names, const char* doc) = 0;
+  /// A nested mapping; `describe_inner` describes its fields.
+  virtual void group(const char* key, const char* doc, const std::function<void(Fields&)>& describe_inner) = 0;
+
+  /// An enumeration whose values 0, 1, ... are called `names` in order.
+  template <typename Enum>
+    requires std::is_enum_v<Enum>
+  void choice(const char* key, Enum& value, const std::vector<std::string>& names, const char* doc) {
+    int index = static_cast<int>(value);
+    choice(key, index, names, doc);
+    value = static_cast<Enum>(index);
+  }
+};
+
+}  // namespace tubebin

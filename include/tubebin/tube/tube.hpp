@@ -1,0 +1,48 @@
+/// A rigid tube: a graph whose edges are cylinders and whose nodes are the points where they meet or end.
+/// Chains are the paper's tubes (Section 3); trees are branching tubes; a loop is a ring; a node alone is a sphere.
+#pragma once
+
+#include <vector>
+
+#include "tubebin/core/geometry.hpp"
+
+namespace tubebin {
+
+/// A cylinder between two nodes, with flat ends. At a node that two or more cylinders share, a sphere of the
+/// tube's radius fills the joint (paper, Section 3).
+struct Cylinder {
+  int node_a = 0;  ///< index into Tube::nodes
+  int node_b = 0;  ///< index into Tube::nodes
+  int order = 0;   ///< position of the cylinder along its path, from 0
+
+  friend bool operator==(const Cylinder&, const Cylinder&) = default;
+};
+
+struct Tube {
+  double radius = 0.0;          ///< outer radius, metres
+  double wall_thickness = 0.0;  ///< metres; 0: solid
+  double mass = 0.0;            ///< kilograms
+  std::vector<Vec3> nodes;      ///< metres, in the tube's own frame
+  std::vector<Cylinder> cylinders;
+
+  /// Number of cylinders that meet at each node.
+  std::vector<int> node_degrees() const;
+  /// Length of one cylinder, metres.
+  double length(const Cylinder& cylinder) const {
+    return (nodes[static_cast<std::size_t>(cylinder.node_b)] - nodes[static_cast<std::size_t>(cylinder.node_a)]).norm();
+  }
+  /// Sum of the cylinders' lengths, metres.
+  double length() const;
+};
+
+/// The body's mass (kg), centre of mass (m, tube frame) and inertia about that centre (kg m^2, tube axes).
+struct MassProperties {
+  double mass = 0.0;
+  Vec3 center = Vec3::Zero();
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+};
+
+/// Of the union of the tube's cylinders and joint spheres, solid or with a bore, at uniform density.
+MassProperties mass_properties(const Tube& tube);
+
+}  // namespace tubebin

@@ -1,0 +1,120 @@
+#include <sstream>
+
+#include "tubebin/core/yaml.hpp"
+
+namespace tubebin {
+namespace {
+
+/// Shortest decimal text that reads back to the same double.
+std::string shortest(double value) { return fmt::format("{}", value); }
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+std::string limits_text(Limits limits) {
+  const Limits open;
+  if (limits.min == open.min && limits.max == open.max) return "any";
+  if (limits.max == open.max) return fmt::format(">= {}", limits.min);
+  if (limits.min == open.min) return fmt::format("<= {}", limits.max);
+  return fmt::format("{} to {}", limits.min, limits.max);
+}
+
+/// Turns each field into its key, value text, unit, valid values and doc; subclasses lay them out.
+class TextFields : public Fields {
+ public:
+  void number(const char* key, double& value, Limits limits, const char* unit, const char* doc) override {
+    entry(key, shortest(value), unit, limits_text(limits), doc);
+  }
+  void integer(const char* key, int& value, Limits limits, const char* unit, const char* doc) override {
+    entry(key, fmt::format("{}", value), unit, limits_text(limits), doc);
+  }
+  void seed(const char* key, std::uint64_t& value, const char* doc) override {
+    entry(key, fmt::format("{}", value), "", ">= 0", doc);
+  }
+  void flag(const char* key, bool& value, const char* doc) override {
+    entry(key, value ? "true" : "false", "", "true, false", doc);
+  }
+  void text(const char* key, std::string& value, const char* doc) override {
+    entry(key, quoted(value), "", "text", doc);
+  }
+  void vector(const char* key, Vec3& value, Limits limits, const char* unit, const char* doc) override {
+    entry(key, fmt::format("[{}, {}, {}]", shortest(value.x()), shortest(value.y()), shortest(value.z())), unit,
+          limits_text(limits), doc);
+  }
+  void integers(const char* key, std::vector<int>& value, Limits limits, const char* doc) override {
+    entry(key, fmt::format("[{}]", fmt::join(value, ", ")), "", limits_text(limits), doc);
+  }
+  void choice(const char* key, int& value, const std::vector<std::string>& names, const char* doc) override {
+    entry(key, names.at(static_cast<std::size_t>(value)), "", fmt::format("{}", fmt::join(names, ", ")), doc);
+  }
+
+ protected:
+  virtual void entry(const std::string& key, const std::string& value, const std::string& unit,
+                     const std::string& valid, const std::string& doc) = 0;
+};
+
+class YamlText : public TextFields {
+ public:
+  void group(const char* key, const char* doc, const std::function<void(Fields&)>& describe_inner) override {
+    out_ << indent_ << key << ":  # " << doc << '\n';
+    indent_ += "  ";
+    describe_inner(*this);
+    indent_.resize(indent_.size() - 2);
+  }
+  std::string str() const { return out_.str(); }
+
+ protected:
+  void entry(const std::string& key, const std::string& value, const std::string& unit, const std::string&,
+             const std::string& doc) override {
+    out_ << indent_ << key << ": " << value << "  # " << (unit.empty() ? "" : unit + "; ") << doc << '\n';
+  }
+
+ private:
+  std::ostringstream out_;
+  std::string indent_;
+};
+
+class MarkdownTable : public TextFields {
+ public:
+  void group(const char* key, const char*, const std::function<void(Fields&)>& describe_inner) override {
+    const std::string outer = prefix_;
+    prefix_ += std::string(key) + ".";
+    describe_inner(*this);
+    prefix_ = outer;
+  }
+  std::string str() const {
+    return "| key | default | unit | valid | effect |\n| --- | --- | --- | --- | --- |\n" + out_.str();
+  }
+
+ protected:
+  void entry(const std::string& key, const std::string& value, const std::string& unit, const std::string& valid,
+             const std::string& doc) override {
+    out_ << fmt::format("| `{}{}` | {} | {} | {} | {} |\n", prefix_, key, value, unit, valid, doc);
+  }
+
+ private:
+  std::ostringstream out_;
+  std::string prefix_;
+};
+
+}  // namespace
+
+std::string write_yaml(const std::function<void(Fields&)>& describe) {
+  YamlText writer;
+  describe(writer);
+  return writer.str();
+}
+
+std::string document_fields(const std::function<void(Fields&)>& describe) {
+  MarkdownTable table;
+  describe(table);
+  return table.str();
+}
+
+}  // namespace tubebin

@@ -1,0 +1,58 @@
+#include "tubebin/scene/scene.hpp"
+
+namespace tubebin {
+
+std::vector<Box> bin_boxes(const Bin& bin) {
+  const double x = bin.length / 2.0;
+  const double y = bin.width / 2.0;
+  const double wall = bin.wall_thickness;
+  return {Box(Vec3(-x - wall, -y - wall, -wall), Vec3(x + wall, y + wall, 0.0)),
+          Box(Vec3(-x - wall, -y - wall, 0.0), Vec3(-x, y + wall, bin.height)),
+          Box(Vec3(x, -y - wall, 0.0), Vec3(x + wall, y + wall, bin.height)),
+          Box(Vec3(-x, -y - wall, 0.0), Vec3(x, -y, bin.height)),
+          Box(Vec3(-x, y, 0.0), Vec3(x, y + wall, bin.height))};
+}
+
+Pose Scanner::world_from_scanner() const {
+  Eigen::Matrix3d looking_down;  // columns: image right, image down, view, in world axes
+  looking_down << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  const Eigen::Matrix3d turned = (Eigen::AngleAxisd(radians(rotation_deg.z()), Vec3::UnitZ()) *
+                                  Eigen::AngleAxisd(radians(rotation_deg.y()), Vec3::UnitY()) *
+                                  Eigen::AngleAxisd(radians(rotation_deg.x()), Vec3::UnitX()))
+                                     .toRotationMatrix() *
+                                 looking_down;
+  Pose pose = Pose::Identity();
+  pose.linear() = turned;
+  pose.translation() = position;
+  return pose;
+}
+
+void describe(Fields& fields, Bin& bin) {
+  fields.number("length", bin.length, {0.001, 100.0}, "m", "inner size along x");
+  fields.number("width", bin.width, {0.001, 100.0}, "m", "inner size along y");
+  fields.number("height", bin.height, {0.001, 100.0}, "m", "height of the walls above the floor");
+  fields.number("wall_thickness", bin.wall_thickness, {0.0001, 10.0}, "m", "of the walls and of the floor");
+}
+
+void describe(Fields& fields, Scanner& scanner) {
+  fields.vector("position", scanner.position, {-1000.0, 1000.0}, "m",
+                "of the optical centre; the origin is the centre of the bin's floor, z is up");
+  fields.vector("rotation_deg", scanner.rotation_deg, {-360.0, 360.0}, "degrees",
+                "about the world's x, y and z axes, in that order; zeros look straight down, image x along the bin");
+  fields.integer("width", scanner.width, {1, 16384}, "pixels", "of the depth image");
+  fields.integer("height", scanner.height, {1, 16384}, "pixels", "of the depth image");
+  fields.number("horizontal_fov_deg", scanner.horizontal_fov_deg, {0.1, 170.0}, "degrees",
+                "angle between the image's left and right border");
+  fields.number("range_min", scanner.range_min, {0.0, 1000.0}, "m", "nearest depth along the optical axis");
+  fields.number("range_max", scanner.range_max, {0.0, 1000.0}, "m", "farthest depth along the optical axis");
+  fields.choice("region", scanner.region, {"bin", "full", "tubes"},
+                "what becomes the cloud: the pixel window that covers the bin, all pixels, or tube points alone");
+}
+
+void check(const Scanner& scanner, const KeyPlaces& places, const std::string& prefix) {
+  if (scanner.range_max <= scanner.range_min)
+    places.fail(prefix + ".range_max",
+                fmt::format("{} m is not beyond range_min = {} m", scanner.range_max, scanner.range_min));
+}
+
+}  // namespace tubebin
