@@ -12,9 +12,30 @@ namespace tubebin {
 
 /// Physics settings; the defaults were measured (docs/physics.md).
 struct PhysicsOptions {
-  double time_step = 0.003;          ///< seconds
-  double time_limit = 30.0;          ///< seconds of simulated time
-  double penetration_max = 0.0005;   ///< metres, in a finished scene
+  double gravity = 9.81;               ///< m/s^2
+  double time_step = 0.003;            ///< seconds
+  int solver_iterations = 40;          ///< of ODE's quickstep
+  double solver_over_relaxation = 1.3;  ///< SOR factor of quickstep
+  double contact_erp = 0.2;            ///< share of an interpenetration that one step corrects
+  double contact_cfm = 1e-5;           ///< softness of a contact, s/kg
+  double contact_layer = 0.0001;       ///< metres of interpenetration left alone, so that contacts persist
+  double correcting_speed_max = 0.5;   ///< m/s
+  double friction_tube = 1.16;         ///< Coulomb coefficient, tube on tube
+  double friction_bin = 1.16;          ///< Coulomb coefficient, tube on bin
+  double damping_linear = 0.002;       ///< share of the linear velocity lost in a step
+  double damping_angular = 0.01;       ///< share of the angular velocity lost in a step
+  double speed_max = 2.5;              ///< m/s
+  double spawn_clearance = 0.005;      ///< metres between spawned tubes, and between them and the rim's height
+  int spawn_tries = 16;                ///< free places looked at for each tube, of which the lowest is taken
+  double rest_speed = 0.01;            ///< m/s
+  double rest_turn_rate = 0.1;         ///< rad/s
+  double rest_window = 0.15;           ///< seconds
+  double check_time = 1.0;             ///< seconds
+  double drift_max = 0.0005;           ///< metres, over check_time
+  double penetration_max = 0.0005;     ///< metres, in a finished scene
+  double time_limit = 20.0;            ///< seconds of simulated time
+
+  friend bool operator==(const PhysicsOptions&, const PhysicsOptions&) = default;
 };
 
 void describe(Fields& fields, PhysicsOptions& options);
@@ -28,7 +49,7 @@ enum class DropFailure {
   unsettled,    ///< still moving at the time limit
   penetration,  ///< bodies interpenetrate more than allowed
   drift,        ///< at rest by its velocities, yet it moved when the simulation ran on
-  floating      ///< a tube at rest that nothing holds up
+  floating      ///< a tube at rest that touches nothing which leads to the bin
 };
 /// "outside", "unsettled", ...
 const char* to_string(DropFailure failure);

@@ -1,0 +1,205 @@
+#include "physics/collision.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace tubebin {
+namespace {
+
+/// Parallel within this sine, two cylinders touch along a line and get a touch at each end of it.
+constexpr double kParallelSine = 0.15;
+
+bool is_flat_end(const Piece& piece, double parameter) {
+  return (parameter <= 0.0 && piece.flat_a) || (parameter >= 1.0 && piece.flat_b);
+}
+
+Vec3 outward_end_direction(const Piece& piece, double parameter) {
+  return parameter <= 0.0 ? Vec3(-piece.direction) : piece.direction;
+}
+
+Vec3 project_on_box(const Box& box, const Vec3& point) { return point.cwiseMax(box.min()).cwiseMin(box.max()); }
+
+/// Touch of two balls: the general case of round parts of two pieces.
+std::optional<Touch> touch_balls(const Vec3& p, double radius_p, const Vec3& q, double radius_q, double depth_min) {
+  const Vec3 offset = q - p;
+  const double distance = offset.norm();
+  const double depth = radius_p + radius_q - distance;
+  if (depth < depth_min) return std::nullopt;
+  const Vec3 normal = distance > 1e-12 ? Vec3(offset / distance) : Vec3::UnitZ();
+  return Touch{p + normal * (radius_p - 0.5 * depth), normal, depth};
+}
+
+/// A flat end of `piece` against the round part of `other`.
+std::optional<Touch> touch_flat_with_round(const Piece& piece, double end, const Piece& other, double depth_min) {
+  const SolidCylinder solid = piece.solid();
+  const auto project = [&](const Vec3& point) { return solid.project(point); };
+  const Vec3 on_axis = other.axis.at(nearest_parameter(other.axis, project));
+  const Vec3 nearest = project(on_axis);
+  const Vec3 offset = on_axis - nearest;
+  const double distance = offset.norm();
+  const double depth = other.radius - distance;
+  if (depth < depth_min) return std::nullopt;
+  const Vec3 normal = distance > 1e-9 ? Vec3(offset / distance) : outward_end_direction(piece, end);
+  return Touch{nearest - normal * (0.5 * depth), normal, depth};
+}
+
+/// Two flat ends, both with rounded rims.
+std::optional<Touch> touch_flat_with_flat(const Piece& first, double end, const Piece& second, double depth_min) {
+  const SolidCylinder core_first = first.solid(kRimRounding);
+  const SolidCylinder core_second = second.solid(kRimRounding);
+  const auto [p, q] = closest_of_convex([&](const Vec3& x) { return core_first.project(x); },
+                                        [&](const Vec3& x) { return core_second.project(x); }, second.axis.at(0.5));
+  const Vec3 offset = q - p;
+  const double distance = offset.norm();
+  const double depth = 2.0 * kRimRounding - distance;
+  if (depth < depth_min) return std::nullopt;
+  const Vec3 normal = distance > 1e-9 ? Vec3(offset / distance) : outward_end_direction(first, end);
+  return Touch{0.5 * (p + q), normal, depth};
+}
+
+/// The touch at the closest points of two pieces' axes.
+std::optional<Touch> touch_pieces(const Piece& first, const Piece& second, const SegmentPair& closest,
+                                  double depth_min) {
+  const bool first_flat = is_flat_end(first, closest.s);
+  const bool second_flat = is_flat_end(second, closest.t);
+  if (first_flat && second_flat) return touch_flat_with_flat(first, closest.s, second, depth_min);
+  if (first_flat) return touch_flat_with_round(first, closest.s, second, depth_min);
+  if (second_flat) {
+    auto touch = touch_flat_with_round(second, closest.t, first, depth_min);
+    if (touch) touch->normal = -touch->normal;
+    return touch;
+  }
+  return touch_balls(first.axis.at(closest.s), first.radius, second.axis.at(closest.t), second.radius, depth_min);
+}
+
+/// Nearly parallel pieces: touches at both ends of the stretch where they run side by side.
+void add_line_touches(const Piece& first, const Piece& second, double depth_min, std::vector<Touch>& out) {
+  double from = (second.axis.a - first.axis.a).dot(first.direction);
+  double to = (second.axis.b - first.axis.a).dot(first.direction);
+  if (from > to) std::swap(from, to);
+  from = std::max(from, 0.0);
+  to = std::min(to, first.length);
+  if (to <= from) return;
+  for (const double along : {from, to}) {
+    const Vec3 on_first = first.axis.a + along * first.direction;
+    const double t = std::clamp((on_first - second.axis.a).dot(second.direction) / second.length, 0.0, 1.0);
+    if (const auto touch = touch_balls(on_first, first.radius, second.axis.at(t), second.radius, depth_min))
+      out.push_back(*touch);
+  }
+}
+
+/// Neighbouring pieces find the same touch twice, at the joint between them: the deepest of a spot stays.
+void keep_deepest_of_each_spot(std::size_t begin, double spot, std::vector<Touch>& touches) {
+  constexpr double kSameDirection = 0.9;  // cosine
+  const auto at = [&](std::size_t i) { return touches.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::stable_sort(at(begin), touches.end(), [](const Touch& a, const Touch& b) { return a.depth > b.depth; });
+  std::size_t kept = begin;
+  for (std::size_t i = begin; i < touches.size(); ++i) {
+    const Touch& touch = touches[i];
+    const bool known = std::any_of(at(begin), at(kept), [&](const Touch& t) {
+      return (t.position - touch.position).squaredNorm() < spot * spot && t.normal.dot(touch.normal) > kSameDirection;
+    });
+    if (!known) touches[kept++] = touch;
+  }
+  touches.resize(kept);
+}
+
+/// The touch of a box (first) with a ball.
+std::optional<Touch> touch_box_with_ball(const Box& box, const Vec3& center, double radius, double depth_min) {
+  const Vec3 nearest = project_on_box(box, center);
+  const Vec3 offset = center - nearest;
+  const double distance = offset.norm();
+  if (distance > 1e-12) {
+    const double depth = radius - distance;
+    if (depth < depth_min) return std::nullopt;
+    const Vec3 normal = offset / distance;
+    return Touch{nearest - normal * (0.5 * depth), normal, depth};
+  }
+  // The centre is inside: out through the nearest face.
+  Eigen::Matrix<double, 6, 1> inside;
+  inside << center - box.min(), box.max() - center;
+  Eigen::Index face = 0;
+  const double out = inside.minCoeff(&face);
+  Vec3 normal = Vec3::Zero();
+  normal[face % 3] = face < 3 ? -1.0 : 1.0;
+  return Touch{center, normal, out + radius};
+}
+
+/// A flat end's rim against a box: the rim point that lies deepest and seven more around, which keep a standing
+/// tube upright.
+void add_rim_touches(const Box& box, const Piece& piece, bool at_a, double depth_min, std::vector<Touch>& out) {
+  constexpr int kRimPoints = 8;
+  const Vec3 center = at_a ? piece.axis.a : piece.axis.b;
+  const Vec3 toward = project_on_box(box, center) - center;
+  const double reach = piece.radius - depth_min;
+  if (toward.squaredNorm() > reach * reach) return;
+  const Vec3 radial = toward - toward.dot(piece.direction) * piece.direction;
+  const Vec3 u = radial.squaredNorm() > 1e-16 ? Vec3(radial.normalized()) : piece.direction.unitOrthogonal();
+  const Vec3 v = piece.direction.cross(u);
+  for (int i = 0; i < kRimPoints; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kRimPoints;
+    const Vec3 rim = center + piece.radius * (std::cos(angle) * u + std::sin(angle) * v);
+    if (const auto touch = touch_box_with_ball(box, rim, 0.0, depth_min)) out.push_back(*touch);
+  }
+}
+
+/// A piece across a box's edge, as a tube that leans over the wall.
+void add_edge_touch(const Box& box, const Piece& piece, double depth_min, std::vector<Touch>& out) {
+  const auto project = [&](const Vec3& point) { return project_on_box(box, point); };
+  const double t = nearest_parameter(piece.axis, project);
+  if (is_flat_end(piece, t)) {
+    const SolidCylinder core = piece.solid(kRimRounding);
+    const auto [p, q] = closest_of_convex(project, [&](const Vec3& x) { return core.project(x); }, piece.axis.at(t));
+    if ((q - p).squaredNorm() < 1e-18) return;  // deeper than the rounding: the rim's touches see it
+    if (const auto touch = touch_box_with_ball(box, q, kRimRounding, depth_min)) out.push_back(*touch);
+  } else if (t > 0.0 && t < 1.0) {
+    if (const auto touch = touch_box_with_ball(box, piece.axis.at(t), piece.radius, depth_min)) out.push_back(*touch);
+  }
+}
+
+Box inflated(const Box& box, double margin) {
+  return {box.min() - Vec3::Constant(margin), box.max() + Vec3::Constant(margin)};
+}
+
+}  // namespace
+
+void collide(const CollisionTube& first, const CollisionTube& second, double depth_min, std::vector<Touch>& out) {
+  const double margin = -std::min(depth_min, 0.0);
+  const Box reach = inflated(second.bounds, margin);
+  if (!first.bounds.intersects(reach)) return;
+  const std::size_t begin = out.size();
+  const double touching = first.radius + second.radius + margin;
+  for (const Piece& p : first.pieces) {
+    if (!p.bounds.intersects(reach)) continue;
+    const Box piece_reach = inflated(p.bounds, margin);
+    for (const Piece& q : second.pieces) {
+      if (!piece_reach.intersects(q.bounds)) continue;
+      const SegmentPair closest = closest_on_segments(p.axis, q.axis);
+      if ((p.axis.at(closest.s) - q.axis.at(closest.t)).squaredNorm() > touching * touching) continue;
+      if (const auto touch = touch_pieces(p, q, closest, depth_min)) out.push_back(*touch);
+      if (p.direction.cross(q.direction).squaredNorm() < kParallelSine * kParallelSine)
+        add_line_touches(p, q, depth_min, out);
+    }
+  }
+  keep_deepest_of_each_spot(begin, 0.5 * std::min(first.radius, second.radius), out);
+}
+
+void collide(const std::vector<Box>& bin, const CollisionTube& tube, double depth_min, std::vector<Touch>& out) {
+  for (const Box& box : bin) {
+    const Box reach = inflated(box, -std::min(depth_min, 0.0));
+    if (!reach.intersects(tube.bounds)) continue;
+    const std::size_t begin = out.size();
+    for (const Vec3& joint : tube.joints)
+      if (const auto touch = touch_box_with_ball(box, joint, tube.radius, depth_min)) out.push_back(*touch);
+    for (const Piece& piece : tube.pieces) {
+      if (!reach.intersects(piece.bounds)) continue;
+      if (piece.flat_a) add_rim_touches(box, piece, true, depth_min, out);
+      if (piece.flat_b) add_rim_touches(box, piece, false, depth_min, out);
+      add_edge_touch(box, piece, depth_min, out);
+    }
+    keep_deepest_of_each_spot(begin, 0.5 * tube.radius, out);
+  }
+}
+
+}  // namespace tubebin

@@ -1,0 +1,62 @@
+/// Contacts between tubes, and between tubes and the bin, of the very surfaces that the scanner sees.
+///
+/// A tube is the union of convex pieces, one a cylinder: the points within its radius of the cylinder's axis, cut
+/// flat at free ends. That is exactly cylinders plus joint spheres. Only where two flat ends meet each other, or a
+/// flat end's face a bin edge, their rims are rounded by kRimRounding.
+#pragma once
+
+#include <vector>
+
+#include "physics/convex.hpp"
+#include "tubebin/scene/scene.hpp"
+
+namespace tubebin {
+
+/// The sharp rim lies (sqrt(2) - 1) * 1 mm = 0.41 mm off the rounded one.
+constexpr double kRimRounding = 0.001;
+
+/// One cylinder of a tube, posed in the world.
+struct Piece {
+  Segment axis;
+  Vec3 direction;  ///< unit, a to b
+  double length = 0.0;
+  double radius = 0.0;
+  bool flat_a = false;  ///< a free end: cut flat
+  bool flat_b = false;
+  Box bounds;
+
+  SolidCylinder solid(double eroded_by = 0.0) const;
+};
+
+/// A tube posed in the world.
+struct CollisionTube {
+  std::vector<Piece> pieces;
+  std::vector<Vec3> joints;  ///< nodes shared by two cylinders or more, and lone spheres
+  double radius = 0.0;
+  Box bounds;
+};
+
+/// Where two bodies touch or nearly do.
+struct Touch {
+  Vec3 position;
+  Vec3 normal;         ///< unit, from the first body into the second
+  double depth = 0.0;  ///< metres of interpenetration; negative: a gap
+};
+
+CollisionTube collision_tube(const PlacedTube& tube);
+/// As collision_tube, into an existing one, without allocation while the tube stays the same.
+void update_collision_tube(const PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out);
+
+/// The bin as it collides: bin_boxes() with the ground below the floor, so that nothing falls through.
+std::vector<Box> collision_boxes(const Bin& bin);
+
+/// Appends the touches of two tubes with depth >= `depth_min` (metres; negative to find gaps too).
+void collide(const CollisionTube& first, const CollisionTube& second, double depth_min, std::vector<Touch>& out);
+
+/// Appends the touches of the bin (first) and a tube (second) with depth >= `depth_min`.
+void collide(const std::vector<Box>& bin, const CollisionTube& tube, double depth_min, std::vector<Touch>& out);
+
+/// All touches of a scene, labelled. `depth_min` as above.
+std::vector<Contact> find_contacts(const std::vector<PlacedTube>& tubes, const Bin& bin, double depth_min);
+
+}  // namespace tubebin

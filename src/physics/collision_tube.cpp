@@ -1,0 +1,73 @@
+#include "physics/collision.hpp"
+
+namespace tubebin {
+
+SolidCylinder Piece::solid(double eroded_by) const {
+  const double from = flat_a ? eroded_by : 0.0;
+  const double to = length - (flat_b ? eroded_by : 0.0);
+  return {axis.a + from * direction, direction, std::max(to - from, 0.0), std::max(radius - eroded_by, 0.0)};
+}
+
+void update_collision_tube(const PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
+  const Vec3 margin = Vec3::Constant(tube.tube.radius);
+  out.radius = tube.tube.radius;
+  out.pieces.resize(tube.tube.cylinders.size());
+  out.joints.clear();
+  out.bounds.setEmpty();
+  for (std::size_t i = 0; i < tube.tube.nodes.size(); ++i) {
+    if (node_degrees[i] == 1) continue;
+    out.joints.push_back(tube.node_in_world(static_cast<int>(i)));
+    out.bounds.extend(Box(out.joints.back() - margin, out.joints.back() + margin));
+  }
+  for (std::size_t i = 0; i < out.pieces.size(); ++i) {
+    const Cylinder& cylinder = tube.tube.cylinders[i];
+    Piece& piece = out.pieces[i];
+    piece.axis = {tube.node_in_world(cylinder.node_a), tube.node_in_world(cylinder.node_b)};
+    piece.direction = piece.axis.b - piece.axis.a;
+    piece.length = piece.direction.norm();
+    piece.direction /= piece.length;
+    piece.radius = tube.tube.radius;
+    piece.flat_a = node_degrees[static_cast<std::size_t>(cylinder.node_a)] == 1;
+    piece.flat_b = node_degrees[static_cast<std::size_t>(cylinder.node_b)] == 1;
+    piece.bounds = Box(piece.axis.a.cwiseMin(piece.axis.b) - margin, piece.axis.a.cwiseMax(piece.axis.b) + margin);
+    out.bounds.extend(piece.bounds);
+  }
+}
+
+CollisionTube collision_tube(const PlacedTube& tube) {
+  CollisionTube out;
+  update_collision_tube(tube, tube.tube.node_degrees(), out);
+  return out;
+}
+
+std::vector<Box> collision_boxes(const Bin& bin) {
+  constexpr double kGroundDepth = 1.0;  // metres; far beyond what a tube covers in a step
+  std::vector<Box> boxes = bin_boxes(bin);
+  boxes.front().min().z() -= kGroundDepth;
+  return boxes;
+}
+
+std::vector<Contact> find_contacts(const std::vector<PlacedTube>& tubes, const Bin& bin, double depth_min) {
+  std::vector<CollisionTube> shapes;
+  for (const PlacedTube& tube : tubes) shapes.push_back(collision_tube(tube));
+  const std::vector<Box> boxes = collision_boxes(bin);
+  std::vector<Contact> contacts;
+  std::vector<Touch> touches;
+  const auto append = [&](std::size_t label_a, std::size_t label_b) {
+    for (const Touch& touch : touches)
+      contacts.push_back({static_cast<std::uint32_t>(label_a), static_cast<std::uint32_t>(label_b), touch.position,
+                          touch.normal, touch.depth});
+    touches.clear();
+  };
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    collide(boxes, shapes[i], depth_min, touches);
+    append(0, i + 1);
+    for (std::size_t j = i + 1; j < shapes.size(); ++j) {
+      collide(shapes[i], shapes[j], depth_min, touches);
+      append(i + 1, j + 1);
+    }
+  }
+  return contacts;
+}
+
+}  // namespace tubebin

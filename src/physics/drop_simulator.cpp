@@ -1,0 +1,93 @@
+#include "tubebin/physics/drop_simulator.hpp"
+
+#include <cmath>
+
+#include "physics/rest_check.hpp"
+#include "physics/rigid_world.hpp"
+#include "physics/spawn.hpp"
+
+namespace tubebin {
+namespace {
+
+/// Bodies at rest may be this far apart and still count as touching: twice what the contact layer leaves.
+constexpr double kTouchingGap = 0.0002;  // metres
+
+int steps_in(double seconds, const PhysicsOptions& options) {
+  return static_cast<int>(std::ceil(seconds / options.time_step));
+}
+
+DropResult failed(DropFailure failure, std::string detail, DropFigures figures = {}) {
+  DropResult result;
+  result.failure = failure;
+  result.detail = std::move(detail);
+  result.figures = figures;
+  return result;
+}
+
+/// Steps until every tube has been slow for the rest window; false at the time limit or when a tube is lost.
+bool run_until_slow(RigidWorld& world, const Bin& bin, const PhysicsOptions& options, DropFigures& figures) {
+  const int window = steps_in(options.rest_window, options);
+  const int limit = steps_in(options.time_limit, options);
+  for (int slow_steps = 0; slow_steps < window;) {
+    if (figures.steps >= limit || find_outside(world, bin)) return false;
+    world.step();
+    ++figures.steps;
+    slow_steps = is_slow(world, options) ? slow_steps + 1 : 0;
+  }
+  return true;
+}
+
+/// Runs on for the check time and measures how far anything moved.
+double run_on(RigidWorld& world, const PhysicsOptions& options, DropFigures& figures) {
+  const std::vector<PlacedTube> before = world.tubes();
+  const int steps = steps_in(options.check_time, options);
+  double drift = 0.0;
+  for (int i = 0; i < steps && drift <= options.drift_max; ++i) {
+    world.step();
+    ++figures.steps;
+    drift = largest_movement(before, world.tubes());
+  }
+  return drift;
+}
+
+DropResult judge(const RigidWorld& world, const Bin& bin, const PhysicsOptions& options, DropFigures figures) {
+  DropResult result;
+  result.tubes = world.tubes();
+  result.contacts = find_contacts(result.tubes, bin, -kTouchingGap);
+  figures.deepest_penetration = deepest_penetration(result.contacts);
+  result.figures = figures;
+  if (const auto tube = find_outside(world, bin))
+    return failed(DropFailure::outside, fmt::format("tube {} left the bin", *tube + 1), figures);
+  if (figures.deepest_penetration > options.penetration_max)
+    return failed(DropFailure::penetration, fmt::format("{:.2f} mm deep", figures.deepest_penetration * 1e3), figures);
+  if (const auto tube = find_floating(result.contacts, result.tubes.size()))
+    return failed(DropFailure::floating, fmt::format("tube {} touches nothing that holds it", *tube + 1), figures);
+  return result;
+}
+
+}  // namespace
+
+DropResult drop_tubes(const std::vector<Tube>& tubes, const Bin& bin, const PhysicsOptions& options,
+                      std::uint64_t seed) {
+  Random random(seed);
+  const auto spawned = spawn(tubes, bin, options, random);
+  if (!spawned) return failed(DropFailure::spawn, "a tube fits between the walls in no orientation");
+
+  RigidWorld world(*spawned, bin, options, random.bits());
+  DropFigures figures;
+  while (true) {
+    const bool slow = run_until_slow(world, bin, options, figures);
+    figures.simulated_seconds = figures.steps * options.time_step;
+    if (const auto tube = find_outside(world, bin))
+      return failed(DropFailure::outside, fmt::format("tube {} left the bin", *tube + 1), figures);
+    if (!slow)
+      return failed(figures.largest_drift > 0.0 ? DropFailure::drift : DropFailure::unsettled,
+                    fmt::format("still moving after {} s", options.time_limit), figures);
+    figures.largest_drift = run_on(world, options, figures);
+    figures.simulated_seconds = figures.steps * options.time_step;
+    if (figures.largest_drift <= options.drift_max) break;
+  }
+  return judge(world, bin, options, figures);
+}
+
+}  // namespace tubebin

@@ -1,0 +1,65 @@
+#include "tubebin/physics/drop_simulator.hpp"
+
+namespace tubebin {
+
+void describe(Fields& fields, PhysicsOptions& o) {
+  fields.number("gravity", o.gravity, {0.01, 100.0}, "m/s^2", "downward acceleration");
+  fields.number("time_step", o.time_step, {1e-5, 0.05}, "s", "of the simulation; smaller is slower and more exact");
+  fields.integer("solver_iterations", o.solver_iterations, {1, 10000}, "",
+                 "of ODE's quickstep; more make stiffer piles");
+  fields.number("solver_over_relaxation", o.solver_over_relaxation, {0.1, 1.9}, "", "quickstep's SOR factor");
+  fields.number("contact_erp", o.contact_erp, {0.0, 1.0}, "",
+                "share of an interpenetration that one step corrects (ODE's error reduction parameter)");
+  fields.number("contact_cfm", o.contact_cfm, {0.0, 1.0}, "s/kg",
+                "softness of a contact (ODE's constraint force mixing)");
+  fields.number("contact_layer", o.contact_layer, {0.0, 0.01}, "m",
+                "interpenetration that is left alone, so that resting contacts persist");
+  fields.number("correcting_speed_max", o.correcting_speed_max, {0.0, 1000.0}, "m/s",
+                "highest speed at which interpenetrating bodies are pushed apart");
+  fields.number("friction_tube", o.friction_tube, {0.0, 1000.0}, "", "Coulomb friction, tube on tube");
+  fields.number("friction_bin", o.friction_bin, {0.0, 1000.0}, "", "Coulomb friction, tube on bin");
+  fields.number("damping_linear", o.damping_linear, {0.0, 1.0}, "", "share of the linear velocity lost in a step");
+  fields.number("damping_angular", o.damping_angular, {0.0, 1.0}, "", "share of the angular velocity lost in a step");
+  fields.number("speed_max", o.speed_max, {0.01, 1000.0}, "m/s",
+                "highest speed of a falling tube, as tubes that are poured from a low height");
+  fields.number("spawn_clearance", o.spawn_clearance, {0.0001, 1.0}, "m",
+                "between spawned tubes, and between them and the bin's rim");
+  fields.integer("spawn_tries", o.spawn_tries, {1, 10000}, "",
+                 "free places looked at for each tube, of which the lowest is taken");
+  fields.number("rest_speed", o.rest_speed, {1e-6, 10.0}, "m/s", "a tube slower than this may be at rest");
+  fields.number("rest_turn_rate", o.rest_turn_rate, {1e-6, 100.0}, "rad/s",
+                "a tube that turns slower than this may be at rest");
+  fields.number("rest_window", o.rest_window, {0.0, 100.0}, "s", "how long all tubes stay below both at rest");
+  fields.number("check_time", o.check_time, {0.0, 100.0}, "s",
+                "how long the simulation runs on to prove that nothing moves");
+  fields.number("drift_max", o.drift_max, {0.0, 1.0}, "m", "farthest that a tube's end may move in check_time");
+  fields.number("penetration_max", o.penetration_max, {0.0, 1.0}, "m",
+                "deepest interpenetration of a finished scene");
+  fields.number("time_limit", o.time_limit, {0.001, 10000.0}, "s",
+                "simulated time after which a drop counts as unsettled");
+}
+
+void check(const PhysicsOptions& options, const KeyPlaces& places, const std::string& prefix) {
+  if (options.time_limit < options.rest_window + options.check_time)
+    places.fail(prefix + ".time_limit", fmt::format("{} s leaves no time for rest_window = {} s and check_time = {} s",
+                                                    options.time_limit, options.rest_window, options.check_time));
+  if (options.penetration_max < options.contact_layer)
+    places.fail(prefix + ".penetration_max",
+                fmt::format("{} m is less than contact_layer = {} m, which every resting contact has",
+                            options.penetration_max, options.contact_layer));
+}
+
+const char* to_string(DropFailure failure) {
+  switch (failure) {
+    case DropFailure::none: return "none";
+    case DropFailure::spawn: return "spawn";
+    case DropFailure::outside: return "outside";
+    case DropFailure::unsettled: return "unsettled";
+    case DropFailure::penetration: return "penetration";
+    case DropFailure::drift: return "drift";
+    case DropFailure::floating: return "floating";
+  }
+  return "unknown";
+}
+
+}  // namespace tubebin

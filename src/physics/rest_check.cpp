@@ -1,0 +1,54 @@
+#include "physics/rest_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tubebin {
+
+bool is_slow(const RigidWorld& world, const PhysicsOptions& options) {
+  for (std::size_t i = 0; i < world.size(); ++i)
+    if (!(world.speed(i) < options.rest_speed && world.turn_rate(i) < options.rest_turn_rate)) return false;
+  return true;
+}
+
+std::optional<std::size_t> find_outside(const RigidWorld& world, const Bin& bin) {
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    const Vec3 center = world.center_of_mass(i);
+    const bool inside =
+        std::abs(center.x()) < bin.length / 2.0 && std::abs(center.y()) < bin.width / 2.0 && center.z() > 0.0;
+    if (!inside) return i;
+  }
+  return std::nullopt;
+}
+
+double deepest_penetration(const std::vector<Contact>& contacts) {
+  double deepest = 0.0;
+  for (const Contact& contact : contacts) deepest = std::max(deepest, contact.depth);
+  return deepest;
+}
+
+std::optional<std::size_t> find_floating(const std::vector<Contact>& contacts, std::size_t tube_count) {
+  std::vector<bool> held(tube_count + 1, false);
+  held[0] = true;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const Contact& contact : contacts) {
+      if (held[contact.label_a] == held[contact.label_b]) continue;
+      held[contact.label_a] = held[contact.label_b] = true;
+      changed = true;
+    }
+  }
+  const auto floating = std::find(held.begin(), held.end(), false);
+  if (floating == held.end()) return std::nullopt;
+  return static_cast<std::size_t>(floating - held.begin()) - 1;
+}
+
+double largest_movement(const std::vector<PlacedTube>& before, const std::vector<PlacedTube>& after) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    for (int node = 0; node < static_cast<int>(before[i].tube.nodes.size()); ++node)
+      largest = std::max(largest, (after[i].node_in_world(node) - before[i].node_in_world(node)).norm());
+  return largest;
+}
+
+}  // namespace tubebin

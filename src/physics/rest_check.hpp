@@ -1,0 +1,26 @@
+/// When is a drop over, and is what it left a pile that can be?
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "physics/rigid_world.hpp"
+
+namespace tubebin {
+
+/// Every tube slower than the options' thresholds.
+bool is_slow(const RigidWorld& world, const PhysicsOptions& options);
+
+/// The first tube whose centre of mass is not above the bin's floor between its walls.
+std::optional<std::size_t> find_outside(const RigidWorld& world, const Bin& bin);
+
+/// Deepest interpenetration, metres; 0 where nothing touches.
+double deepest_penetration(const std::vector<Contact>& contacts);
+
+/// The first tube from which no chain of contacts leads to the bin.
+std::optional<std::size_t> find_floating(const std::vector<Contact>& contacts, std::size_t tube_count);
+
+/// Farthest that any node moved between two moments of the same tubes, metres.
+double largest_movement(const std::vector<PlacedTube>& before, const std::vector<PlacedTube>& after);
+
+}  // namespace tubebin

@@ -1,0 +1,85 @@
+#include "physics/spawn.hpp"
+
+#include "physics/collision.hpp"
+
+namespace tubebin {
+namespace {
+
+constexpr int kOrientationTries = 1000;
+
+Box bounds_of(const Tube& tube, const Quat& rotation) {
+  Box bounds;
+  for (const Vec3& node : tube.nodes) bounds.extend(rotation * node);
+  return {bounds.min() - Vec3::Constant(tube.radius), bounds.max() + Vec3::Constant(tube.radius)};
+}
+
+bool fits_between_walls(const Box& bounds, const Bin& bin, double clearance) {
+  return bounds.sizes().x() + 2.0 * clearance <= bin.length && bounds.sizes().y() + 2.0 * clearance <= bin.width;
+}
+
+std::optional<Quat> fitting_rotation(const Tube& tube, const Bin& bin, double clearance, Random& random) {
+  Quat rotation = Quat::Identity();
+  for (int i = 0; i < kOrientationTries; ++i) {
+    if (fits_between_walls(bounds_of(tube, rotation), bin, clearance)) return rotation;
+    rotation = random.rotation();
+  }
+  return std::nullopt;
+}
+
+bool overlaps(const CollisionTube& shape, const std::vector<CollisionTube>& placed, double clearance) {
+  std::vector<Touch> touches;
+  for (const CollisionTube& other : placed) {
+    collide(shape, other, -clearance, touches);
+    if (!touches.empty()) return true;
+  }
+  return false;
+}
+
+CollisionTube moved(CollisionTube shape, const Vec3& by) {
+  for (Piece& piece : shape.pieces) {
+    piece.axis = {piece.axis.a + by, piece.axis.b + by};
+    piece.bounds.translate(by);
+  }
+  for (Vec3& joint : shape.joints) joint += by;
+  shape.bounds.translate(by);
+  return shape;
+}
+
+/// The lowest height offset, in steps of a radius, at which the shape is free.
+double lowest_free_height(const CollisionTube& shape, const std::vector<CollisionTube>& placed, double clearance) {
+  double height = 0.0;
+  while (overlaps(moved(shape, {0.0, 0.0, height}), placed, clearance)) height += shape.radius;
+  return height;
+}
+
+}  // namespace
+
+std::optional<std::vector<PlacedTube>> spawn(const std::vector<Tube>& tubes, const Bin& bin,
+                                             const PhysicsOptions& options, Random& random) {
+  const double clearance = options.spawn_clearance;
+  std::vector<PlacedTube> spawned;
+  std::vector<CollisionTube> placed;
+  for (const Tube& tube : tubes) {
+    const std::optional<Quat> rotation = fitting_rotation(tube, bin, clearance, random);
+    if (!rotation) return std::nullopt;
+    const Box bounds = bounds_of(tube, *rotation);
+    const Vec3 room = 0.5 * (Vec3(bin.length, bin.width, 0.0) - bounds.sizes()) - Vec3::Constant(clearance);
+    PlacedTube lowest{tube, Pose::Identity()};
+    CollisionTube lowest_shape;
+    for (int i = 0; i < options.spawn_tries; ++i) {
+      const double x = random.uniform(-room.x(), room.x());
+      const double y = random.uniform(-room.y(), room.y());
+      const Vec3 start(x - bounds.center().x(), y - bounds.center().y(), bin.height + clearance - bounds.min().z());
+      const CollisionTube shape = collision_tube({tube, make_pose(*rotation, start)});
+      const Vec3 rise(0.0, 0.0, lowest_free_height(shape, placed, clearance));
+      if (i > 0 && shape.bounds.max().z() + rise.z() >= lowest_shape.bounds.max().z()) continue;
+      lowest.world_from_tube = make_pose(*rotation, start + rise);
+      lowest_shape = moved(shape, rise);
+    }
+    spawned.push_back(lowest);
+    placed.push_back(lowest_shape);
+  }
+  return spawned;
+}
+
+}  // namespace tubebin
