@@ -1,0 +1,61 @@
+// Convex solids against rays from the origin, in double precision. A ray is t * direction; a convex solid takes one
+// interval of t from it, negative t included, so a solid around the origin needs no case of its own.
+#pragma once
+
+#include <limits>
+
+#include "tubebin/core/geometry.hpp"
+
+namespace tubebin {
+
+/// The part [begin, end] of a ray; empty unless begin <= end.
+struct Interval {
+  double begin = std::numeric_limits<double>::infinity();
+  double end = -std::numeric_limits<double>::infinity();
+
+  bool empty() const { return !(begin <= end); }
+};
+
+/// A solid cylinder with flat caps.
+class SolidCylinder {
+ public:
+  /// `base` and `top` (metres, different) are the centres of the caps.
+  SolidCylinder(const Vec3& base, const Vec3& top, double radius);
+
+  Interval intersect(const Vec3& direction) const;
+  Eigen::AlignedBox3d bounds() const;
+
+  const Vec3& base() const { return base_; }
+  Vec3 top() const { return base_ + length_ * axis_; }
+  const Vec3& axis() const { return axis_; }  ///< unit, from base to top
+  double radius() const { return radius_; }
+
+ private:
+  Vec3 base_;
+  Vec3 axis_;
+  double length_;
+  double radius_;
+  double base_height_;  ///< of the base above the origin, along the axis
+  Vec3 moment_;         ///< axis x base: direction . moment is the ray's distance from the axis, times |direction x axis|
+  Vec3 foot_;           ///< the axis' point nearest to the origin
+};
+
+class SolidSphere {
+ public:
+  SolidSphere(const Vec3& center, double radius) : center_(center), radius_(radius) {}
+
+  Interval intersect(const Vec3& direction) const;
+  Eigen::AlignedBox3d bounds() const;
+
+  const Vec3& center() const { return center_; }
+  double radius() const { return radius_; }
+
+ private:
+  Vec3 center_;
+  double radius_;
+};
+
+/// An axis-aligned solid box.
+Interval intersect(const Eigen::AlignedBox3d& box, const Vec3& direction);
+
+}  // namespace tubebin

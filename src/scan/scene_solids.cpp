@@ -1,0 +1,31 @@
+#include "scan/scene_solids.hpp"
+
+namespace tubebin {
+namespace {
+
+void add_tube(const PlacedTube& placed, Label label, const Vec3& scanner_in_world, SceneSolids& solids) {
+  const Tube& tube = placed.tube;
+  const auto node_seen = [&](int node) -> Vec3 { return placed.node_in_world(node) - scanner_in_world; };
+  for (const Cylinder& cylinder : tube.cylinders) {
+    const Vec3 base = node_seen(cylinder.node_a);
+    const Vec3 top = node_seen(cylinder.node_b);
+    if (base != top) solids.cylinders.push_back({SolidCylinder(base, top, tube.radius), label});
+  }
+  const std::vector<int> degrees = tube.node_degrees();
+  for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
+    if (degrees[static_cast<std::size_t>(node)] != 1)
+      solids.spheres.push_back({SolidSphere(node_seen(node), tube.radius), label});
+}
+
+}  // namespace
+
+SceneSolids scene_solids(const Scene& scene) {
+  SceneSolids solids;
+  Label label = 0;
+  for (const PlacedTube& tube : scene.tubes) add_tube(tube, ++label, scene.scanner.position, solids);
+  solids.bin = bin_boxes(scene.bin);
+  for (Box& box : solids.bin) box.translate(-scene.scanner.position);
+  return solids;
+}
+
+}  // namespace tubebin

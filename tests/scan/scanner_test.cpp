@@ -1,0 +1,311 @@
+#include "tubebin/scan/scanner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "scan/random_scene.hpp"
+#include "scan/signed_distance.hpp"
+#include "tubebin/cloud/label_colors.hpp"
+#include "tubebin/scene/camera.hpp"
+
+namespace tubebin {
+namespace {
+
+using testing::distance_to;
+using testing::look_closely;
+using testing::random_scene;
+using testing::sphere_trace;
+
+constexpr double kSurfaceTolerance = 5e-6;  // metres: what a point may be off its surface
+
+void expect_points_on_their_surfaces(const Scene& scene, const Cloud& cloud) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (is_finite(cloud.points[i]))
+      worst = std::max(worst, std::abs(distance_to(cloud.points[i].cast<double>(), scene, cloud.labels[i])));
+  EXPECT_LT(worst, kSurfaceTolerance);
+}
+
+/// Every `stride`-th pixel of the whole image has what sphere tracing finds there; returns how many were hits.
+int expect_agreement_with_sphere_tracing(Scene scene, int stride = 1) {
+  scene.scanner.region = ScanRegion::full;
+  const Cloud cloud = scan(scene).cloud;
+  const Camera camera(scene.scanner);
+  int hits = 0, wrong_labels = 0, wrong_places = 0;
+  for (std::size_t i = 0; i < cloud.size(); i += static_cast<std::size_t>(stride)) {
+    const int column = static_cast<int>(i % cloud.width), row = static_cast<int>(i / cloud.width);
+    const auto traced = sphere_trace(scene, camera.pixel_direction_in_world(column, row));
+    hits += traced.found ? 1 : 0;
+    if (traced.found != is_finite(cloud.points[i]) || (traced.found && traced.label != cloud.labels[i]))
+      ++wrong_labels;
+    else if (traced.found && (cloud.points[i].cast<double>() - traced.point).norm() > 2e-5)
+      ++wrong_places;
+  }
+  EXPECT_EQ(wrong_labels, 0);
+  EXPECT_EQ(wrong_places, 0);
+  return hits;
+}
+
+TEST(Scanner, AgreesWithSphereTracingInRandomScenes) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Scene scene = random_scene(8, seed);
+    look_closely(scene.scanner, 120, 76);
+    EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 4000);
+  }
+}
+
+TEST(Scanner, AgreesWithSphereTracingWhenTiltedAndTurned) {
+  Scene scene = random_scene(8, 4);
+  look_closely(scene.scanner, 120, 76);
+  scene.scanner.position = {1.0, -0.15, 1.2};
+  scene.scanner.rotation_deg = {20.0, 37.0, 20.0};
+  EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 1000);
+}
+
+TEST(Scanner, AgreesWithSphereTracingAmongTheTubes) {
+  Scene scene = random_scene(12, 5);
+  look_closely(scene.scanner, 120, 76);
+  scene.scanner.horizontal_fov_deg = 120.0;
+  scene.scanner.position = {0.02, 0.01, 0.12};
+  scene.scanner.range_min = 0.0;
+  scene.scanner.rotation_deg = {70.0, 10.0, 30.0};
+  EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 4000);
+}
+
+TEST(Scanner, SeesTheInnerSurfaceFromInsideATube) {
+  Scene scene = random_scene(3, 6);
+  look_closely(scene.scanner, 60, 40);
+  scene.scanner.horizontal_fov_deg = 100.0;
+  scene.scanner.range_min = 0.0;
+  // In the joint of two cylinders: their caps inside the joint's sphere are no surface.
+  scene.tubes.resize(1);
+  scene.tubes[0].world_from_tube.translation().z() += 1.0;  // clear of the bin
+  scene.scanner.position = scene.tubes[0].node_in_world(3);
+  const Scan inside = scan(scene);
+  expect_points_on_their_surfaces(scene, inside.cloud);
+  EXPECT_EQ(inside.tube_pixels[0], 60u * 40u);
+}
+
+TEST(Scanner, SeesTheBinsOuterSurfaceFromInsideAWall) {
+  Scene scene;
+  look_closely(scene.scanner, 60, 40);
+  scene.scanner.position = {scene.bin.length / 2 + scene.bin.wall_thickness / 2, 0.0, 0.1};
+  scene.scanner.range_min = 0.0;
+  const Scan down = scan(scene);  // through the wall and, without a seam, through the floor slab below it
+  EXPECT_EQ(down.window, (PixelWindow{0, 0, 60, 40}));
+  for (const Point& point : down.cloud.points) EXPECT_GT(std::abs(point.z()), 1e-6F);
+  expect_points_on_their_surfaces(scene, down.cloud);
+}
+
+TEST(Scanner, NearPlaneOpensWhatReachesThroughIt) {
+  Scene scene = random_scene(8, 9);
+  look_closely(scene.scanner, 120, 76);
+  scene.scanner.range_min = 1.87;  // 0.13 m above the floor
+  EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 2000);
+}
+
+TEST(Scanner, RangeIsInclusiveAndAlongTheOpticalAxis) {
+  Scene scene;
+  scene.scanner.range_max = 2.0;  // the floor, exactly, also in the corners of the image
+  const Scan whole = scan(scene);
+  std::size_t floor_points = 0;
+  for (const Point& point : whole.cloud.points) floor_points += is_finite(point) && point.z() < 1e-6F ? 1 : 0;
+  const double pixels_per_metre = Camera(scene.scanner).focal_length() / 2.0;
+  const double expected = 0.55 * 0.37 * pixels_per_metre * pixels_per_metre;
+  EXPECT_NEAR(static_cast<double>(floor_points), expected, 0.01 * expected);
+
+  scene.scanner.range_max = 1.9999;
+  for (const Point& point : scan(scene).cloud.points) {
+    ASSERT_TRUE(!is_finite(point) || point.z() > 1e-5F);
+  }
+}
+
+TEST(Scanner, FloorAtTheRangesEndSurvivesEveryTurnAboutTheAxis) {
+  Scene scene;
+  look_closely(scene.scanner, 60, 40);
+  scene.scanner.range_max = 2.0;
+  for (int angle = 0; angle < 360; angle += 7) {
+    scene.scanner.rotation_deg = {0.0, 0.0, static_cast<double>(angle)};
+    const Cloud cloud = scan(scene).cloud;
+    const std::size_t middle = cloud.size() / 2 + cloud.width / 2;
+    EXPECT_TRUE(is_finite(cloud.points[middle])) << angle << " degrees";
+  }
+}
+
+TEST(Scanner, EveryPointLiesOnItsSurfaceAndItsPixelsRay) {
+  const Scene scene = random_scene(10, 11);
+  const Scan result = scan(scene);
+  expect_points_on_their_surfaces(scene, result.cloud);
+  const Camera camera(scene.scanner);
+  for (std::size_t i = 0; i < result.cloud.size(); ++i) {
+    if (!is_finite(result.cloud.points[i])) continue;
+    const Eigen::Vector2d pixel = camera.project_from_world(result.cloud.points[i].cast<double>());
+    ASSERT_NEAR(pixel.x(), result.window.x + static_cast<int>(i % result.cloud.width) + 0.5, 2e-3);
+    ASSERT_NEAR(pixel.y(), result.window.y + static_cast<int>(i / result.cloud.width) + 0.5, 2e-3);
+  }
+}
+
+TEST(Scanner, RegionsShowTheSameSurfaces) {
+  Scene scene = random_scene(10, 12);
+  const Scan bin = scan(scene);
+  scene.scanner.region = ScanRegion::full;
+  const Scan full = scan(scene);
+  scene.scanner.region = ScanRegion::tubes;
+  const Scan tubes = scan(scene);
+
+  ASSERT_EQ(full.cloud.size(), 1920u * 1200u);
+  ASSERT_EQ(full.window, (PixelWindow{0, 0, 1920, 1200}));
+  EXPECT_EQ(tubes.cloud.height, 1u);
+  EXPECT_EQ(tubes.cloud.width, tubes.cloud.size());
+  EXPECT_LT(bin.cloud.size(), full.cloud.size() / 8);
+
+  std::size_t tube_point = 0;
+  for (std::size_t i = 0; i < full.cloud.size(); ++i) {
+    const int column = static_cast<int>(i % 1920) - bin.window.x, row = static_cast<int>(i / 1920) - bin.window.y;
+    if (column < 0 || row < 0 || column >= bin.window.width || row >= bin.window.height) {
+      ASSERT_FALSE(is_finite(full.cloud.points[i]));
+      continue;
+    }
+    const std::size_t j = static_cast<std::size_t>(row) * bin.cloud.width + static_cast<std::size_t>(column);
+    ASSERT_EQ(is_finite(full.cloud.points[i]), is_finite(bin.cloud.points[j]));
+    ASSERT_EQ(full.cloud.labels[i], bin.cloud.labels[j]);
+    ASSERT_EQ(full.cloud.colors[i], bin.cloud.colors[j]);
+    if (is_finite(full.cloud.points[i])) { ASSERT_EQ(full.cloud.points[i], bin.cloud.points[j]); }
+    if (full.cloud.labels[i] == 0) continue;
+    ASSERT_LT(tube_point, tubes.cloud.size());
+    ASSERT_EQ(full.cloud.points[i], tubes.cloud.points[tube_point]);
+    ASSERT_EQ(full.cloud.labels[i], tubes.cloud.labels[tube_point]);
+    ++tube_point;
+  }
+  EXPECT_EQ(tube_point, tubes.cloud.size());
+  EXPECT_EQ(full.tube_pixels, bin.tube_pixels);
+  EXPECT_EQ(full.tube_pixels, tubes.tube_pixels);
+}
+
+/// The smallest window that has all that the image shows, found pixel by pixel without the scanner.
+PixelWindow traced_window(const Scene& scene) {
+  const Camera camera(scene.scanner);
+  int left = camera.width(), right = -1, top = camera.height(), bottom = -1;
+  for (int row = 0; row < camera.height(); ++row) {
+    for (int column = 0; column < camera.width(); ++column) {
+      if (!sphere_trace(scene, camera.pixel_direction_in_world(column, row)).found) continue;
+      left = std::min(left, column);
+      right = std::max(right, column);
+      top = std::min(top, row);
+      bottom = std::max(bottom, row);
+    }
+  }
+  return {left, top, right - left + 1, bottom - top + 1};
+}
+
+/// `slack` more pixels on a side are allowed: the tip of a corner may lie between pixel centres.
+void expect_window_covers(const PixelWindow& window, const PixelWindow& traced, int slack) {
+  EXPECT_LE(window.x, traced.x);
+  EXPECT_LE(window.y, traced.y);
+  EXPECT_GE(window.x + window.width, traced.x + traced.width);
+  EXPECT_GE(window.y + window.height, traced.y + traced.height);
+  EXPECT_LE(window.width, traced.width + 2 * slack);
+  EXPECT_LE(window.height, traced.height + 2 * slack);
+}
+
+TEST(Scanner, WindowIsTheSmallestThatShowsBinAndTubes) {
+  Scene scene = random_scene(6, 13);
+  scene.scanner.width = 192;
+  scene.scanner.height = 120;
+  expect_window_covers(scan(scene).window, traced_window(scene), 0);
+  scene.scanner.position = {0.8, -0.3, 1.0};
+  scene.scanner.rotation_deg = {15.0, 38.0, 0.0};
+  expect_window_covers(scan(scene).window, traced_window(scene), 1);
+  scene.scanner.position = {0.3, 0.3, 1.0};  // the bin reaches out of the image
+  scene.scanner.rotation_deg = {0.0, 0.0, 30.0};
+  expect_window_covers(scan(scene).window, traced_window(scene), 5);
+}
+
+TEST(Scanner, WindowOfTubesAloneIsTheirs) {
+  Scene scene = random_scene(6, 18);
+  scene.bin.length = scene.bin.width = 0.01;  // so small that the tubes alone decide
+  scene.bin.height = 0.001;
+  scene.scanner.width = 192;
+  scene.scanner.height = 120;
+  for (const double pitch : {0.0, 20.0}) {
+    scene.scanner.rotation_deg.y() = pitch;
+    scene.scanner.position.x() = 2.0 * std::tan(radians(pitch));
+    scene.scanner.region = ScanRegion::tubes;
+    expect_window_covers(scan(scene).window, traced_window(scene), 1);
+  }
+}
+
+TEST(Scanner, HasOneColourALabel) {
+  const Scene scene = random_scene(10, 14);
+  const Scan result = scan(scene);
+  const std::vector<Color> colors = label_colors(10);
+  std::vector<std::size_t> counts(11, 0);
+  for (std::size_t i = 0; i < result.cloud.size(); ++i) {
+    if (!is_finite(result.cloud.points[i])) {
+      ASSERT_EQ(result.cloud.colors[i], kNullColor);
+      ASSERT_EQ(result.cloud.labels[i], 0u);
+      continue;
+    }
+    ASSERT_LE(result.cloud.labels[i], 10u);
+    ASSERT_EQ(result.cloud.colors[i], colors[result.cloud.labels[i]]);
+    ++counts[result.cloud.labels[i]];
+  }
+  for (std::size_t k = 1; k <= 10; ++k) EXPECT_EQ(counts[k], result.tube_pixels[k - 1]);
+}
+
+TEST(Scanner, ImagesOfManySizes) {
+  Scene scene = random_scene(5, 15);
+  for (const auto& [width, height] : {std::pair{1, 1}, {64, 40}, {4096, 3000}}) {
+    scene.scanner.width = width;
+    scene.scanner.height = height;
+    scene.scanner.region = ScanRegion::full;
+    const Scan result = scan(scene);
+    ASSERT_EQ(result.cloud.size(), static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    EXPECT_EQ(result.cloud.width, static_cast<std::uint32_t>(width));
+    if (width <= 64) expect_points_on_their_surfaces(scene, result.cloud);
+  }
+  // The larger image samples the same surfaces, 4096 x 4096 / 64 x 64 times as densely.
+  scene.scanner.width = 4096;
+  scene.scanner.height = 3000;
+  const double large = static_cast<double>(scan(scene).tube_pixels[0]);
+  scene.scanner.width = 512;
+  scene.scanner.height = 375;
+  EXPECT_NEAR(static_cast<double>(scan(scene).tube_pixels[0]), large / 64.0, 0.03 * large / 64.0);
+}
+
+TEST(Scanner, LooksAwayFromEverything) {
+  Scene scene = random_scene(3, 16);
+  scene.scanner.rotation_deg = {180.0, 0.0, 0.0};
+  const Scan away = scan(scene);
+  EXPECT_EQ(away.window, PixelWindow{});
+  EXPECT_EQ(away.cloud.size(), 0u);
+  EXPECT_EQ(away.tube_pixels, std::vector<std::size_t>(3, 0));
+}
+
+TEST(Scanner, BranchingTubesRingsAndLoneNodes) {
+  Scene scene;
+  look_closely(scene.scanner, 120, 76);
+  Tube tube;
+  tube.radius = 0.0125;
+  tube.nodes = {{0, 0, 0.1}, {0.1, 0, 0.1}, {-0.07, 0.07, 0.12}, {-0.07, -0.07, 0.08}, {0.15, 0.1, 0.05}};
+  tube.cylinders = {{0, 1, 0}, {0, 2, 0}, {0, 3, 0}};
+  scene.tubes.push_back({tube, Pose::Identity()});
+  Tube ring = tube;
+  ring.nodes = {{-0.2, 0.1, 0.1}, {-0.1, 0.12, 0.1}, {-0.15, 0.17, 0.15}};
+  ring.cylinders = {{0, 1, 0}, {1, 2, 1}, {2, 0, 2}};
+  scene.tubes.push_back({ring, Pose::Identity()});
+  expect_agreement_with_sphere_tracing(scene);
+  for (const std::size_t pixels : scan(scene).tube_pixels) EXPECT_GT(pixels, 50u);
+}
+
+TEST(Scanner, SameSceneSameBytes) {
+  const Scene scene = random_scene(10, 17);
+  const Scan first = scan(scene), second = scan(scene);
+  ASSERT_EQ(first.cloud.size(), second.cloud.size());
+  EXPECT_EQ(std::memcmp(first.cloud.points.data(), second.cloud.points.data(), first.cloud.size() * sizeof(Point)), 0);
+  EXPECT_EQ(first.cloud.labels, second.cloud.labels);
+}
+
+}  // namespace
+}  // namespace tubebin
