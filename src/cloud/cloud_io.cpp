@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "cloud/cloud_formats.hpp"
-#include "cloud/text_scan.hpp"
+#include "tubebin/core/text_scan.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "cloud/text_scan.hpp"
+#include "tubebin/core/text_scan.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin {

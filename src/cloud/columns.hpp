@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cloud/text_scan.hpp"
+#include "tubebin/core/text_scan.hpp"
 #include "tubebin/cloud/cloud.hpp"
 
 namespace tubebin {

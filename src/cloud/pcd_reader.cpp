@@ -8,7 +8,7 @@
 
 #include "cloud/cloud_formats.hpp"
 #include "cloud/columns.hpp"
-#include "cloud/text_scan.hpp"
+#include "tubebin/core/text_scan.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin {

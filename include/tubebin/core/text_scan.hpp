@@ -1,6 +1,7 @@
 /// Lines, words and numbers of a text that may be anything.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 #include <string>
