@@ -58,7 +58,8 @@ std::vector<Candidate> candidates() {
 /// Farthest-first traversal (Gonzalez 1985): each colour is the candidate farthest from all before it, so that the
 /// first colours are the most different ones and label k has the same colour in every scene.
 std::vector<Color> label_colors(std::size_t tube_count) {
-  std::vector<Candidate> free = candidates();
+  static const std::vector<Candidate> all = candidates();
+  std::vector<Candidate> free = all;
   if (tube_count >= free.size())
     throw_config_error("{} tubes are more than there are colours to tell them apart; valid: below {}", tube_count,
                        free.size());

@@ -1,7 +1,9 @@
 /// scene.json: the ground truth beside a cloud. Its format is docs/scene.schema.json.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tubebin/cloud/cloud.hpp"
@@ -20,10 +22,16 @@ struct SceneRecord {
   std::vector<Contact> contacts;
 };
 
-/// JSON text; equal records give equal bytes, numbers read back exactly.
+/// JSON text; equal records give equal bytes. Throws std::invalid_argument where the record contradicts itself
+/// (sizes of lists) or holds a number that is not finite.
 std::string format_scene_json(const SceneRecord& record);
 
-/// Throws IoError naming the file and the place (JSON pointer) of what is missing or wrong.
+/// The record that was written, every number and pose bit by bit. Keys that this version does not know are left
+/// alone. Throws IoError naming the file and the place (JSON pointer) of what is missing or wrong, also where
+/// convenience values (lengths, nodes in world, quaternions) disagree with what they derive from.
 SceneRecord read_scene_json(const std::string& path);
+
+/// As read_scene_json, from a text; `name` stands for the file in messages.
+SceneRecord parse_scene_json(std::string_view text, const std::string& name);
 
 }  // namespace tubebin

@@ -1,0 +1,226 @@
+#include "tubebin/scene/scene_json.hpp"
+
+#include <limits>
+#include <stdexcept>
+
+#include "scene/json_reader.hpp"
+#include "scene/json_writer.hpp"
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/scene/camera.hpp"
+
+namespace tubebin {
+namespace {
+
+constexpr const char* kFormat = "tubebin scene";
+/// Grows when a reader of the version before would misunderstand a file; new keys alone don't count.
+constexpr int kFormatVersion = 1;
+
+/// For values that are computed from others, in files that another program or a person may have edited.
+constexpr double kDistanceTolerance = 1e-6;
+constexpr double kPixelTolerance = 1e-6;
+
+// ---- writing
+
+OrderedJson color_to_json(Color color) { return {color >> 16 & 0xFF, color >> 8 & 0xFF, color & 0xFF}; }
+
+OrderedJson bin_to_json(Bin bin, Color color) {
+  OrderedJson json = {{"label", 0}, {"color", color_to_json(color)}};
+  json.update(fields_to_json([&](Fields& fields) { describe(fields, bin); }));
+  return json;
+}
+
+OrderedJson scanner_to_json(Scanner scanner, const PixelWindow& window) {
+  const Camera camera(scanner);
+  OrderedJson json = fields_to_json([&](Fields& fields) { describe(fields, scanner); });
+  json["pose"] = to_json(scanner.world_from_scanner());
+  json["intrinsics"] = {{"fx", to_json(camera.focal_length())},
+                        {"fy", to_json(camera.focal_length())},
+                        {"cx", scanner.width / 2.0},
+                        {"cy", scanner.height / 2.0}};
+  json["window"] = {{"x", window.x}, {"y", window.y}, {"width", window.width}, {"height", window.height}};
+  return json;
+}
+
+OrderedJson tube_to_json(const PlacedTube& placed, std::size_t label, Color color, std::size_t visible_pixels) {
+  const Tube& tube = placed.tube;
+  OrderedJson nodes = OrderedJson::array(), nodes_in_world = OrderedJson::array(), cylinders = OrderedJson::array();
+  for (int i = 0; i < static_cast<int>(tube.nodes.size()); ++i) {
+    nodes.push_back(to_json(tube.nodes[static_cast<std::size_t>(i)]));
+    nodes_in_world.push_back(to_json(placed.node_in_world(i)));
+  }
+  for (const Cylinder& cylinder : tube.cylinders)
+    cylinders.push_back({{"node_a", cylinder.node_a}, {"node_b", cylinder.node_b}, {"order", cylinder.order}});
+  return {{"id", label},
+          {"label", label},
+          {"color", color_to_json(color)},
+          {"radius", to_json(tube.radius)},
+          {"wall_thickness", to_json(tube.wall_thickness)},
+          {"mass", to_json(tube.mass)},
+          {"length", to_json(tube.length())},
+          {"nodes", std::move(nodes)},
+          {"cylinders", std::move(cylinders)},
+          {"pose", to_json(placed.world_from_tube)},
+          {"nodes_in_world", std::move(nodes_in_world)},
+          {"visible_pixels", visible_pixels},
+          {"visible", visible_pixels > 0}};
+}
+
+OrderedJson contact_to_json(const Contact& contact) {
+  return {{"label_a", contact.label_a},
+          {"label_b", contact.label_b},
+          {"position", to_json(contact.position)},
+          {"normal", to_json(contact.normal)},
+          {"depth", to_json(contact.depth)}};
+}
+
+// ---- reading
+
+Color read_color(const JsonPlace& place) {
+  Color color = 0;
+  for (const JsonPlace& channel : place.elements(3)) color = color << 8 | static_cast<Color>(channel.whole(0, 255));
+  return color;
+}
+
+void read_header(const JsonPlace& root) {
+  const JsonPlace format = root.at("format");
+  if (format.text() != kFormat) format.fail(fmt::format("\"{}\"", kFormat));
+  const JsonPlace version = root.at("format_version");
+  if (version.whole(1, std::numeric_limits<int>::max()) != kFormatVersion)
+    version.fail(fmt::format("{}, the version that this program reads", kFormatVersion));
+}
+
+Scanner read_scanner(const JsonPlace& place) {
+  Scanner scanner;
+  place.fields([&](Fields& fields) { describe(fields, scanner); });
+  if (scanner.range_max <= scanner.range_min) place.at("range_max").fail("beyond range_min");
+  const Camera camera(scanner);
+  const JsonPlace pose = place.at("pose");
+  if (!pose.pose().isApprox(scanner.world_from_scanner(), kDistanceTolerance))
+    pose.fail("the pose that follows from position and rotation_deg");
+  const JsonPlace intrinsics = place.at("intrinsics");
+  for (const char* key : {"fx", "fy"}) intrinsics.at(key).expect_near(camera.focal_length(), kPixelTolerance);
+  intrinsics.at("cx").expect_near(scanner.width / 2.0, kPixelTolerance);
+  intrinsics.at("cy").expect_near(scanner.height / 2.0, kPixelTolerance);
+  return scanner;
+}
+
+PixelWindow read_window(const JsonPlace& place, const Scanner& scanner) {
+  const auto read = [&](const char* key, int max) { return place.at(key).integer({0.0, static_cast<double>(max)}); };
+  PixelWindow window;
+  window.x = read("x", scanner.width);
+  window.y = read("y", scanner.height);
+  window.width = read("width", scanner.width - window.x);
+  window.height = read("height", scanner.height - window.y);
+  return window;
+}
+
+std::vector<Cylinder> read_cylinders(const JsonPlace& place, const Tube& tube) {
+  const double last_node = static_cast<double>(tube.nodes.size()) - 1.0;
+  std::vector<Cylinder> cylinders;
+  for (const JsonPlace& element : place.elements()) {
+    const Cylinder cylinder = {element.at("node_a").integer({0.0, last_node}),
+                               element.at("node_b").integer({0.0, last_node}), element.at("order").integer({0.0})};
+    if (!(tube.length(cylinder) > 0.0)) element.fail("a cylinder between nodes at different places");
+    cylinders.push_back(cylinder);
+  }
+  return cylinders;
+}
+
+void check_nodes_in_world(const JsonPlace& place, const PlacedTube& placed) {
+  const std::vector<JsonPlace> nodes = place.elements(placed.tube.nodes.size());
+  for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {
+    const JsonPlace& node = nodes[static_cast<std::size_t>(i)];
+    if (!((node.vector() - placed.node_in_world(i)).norm() <= kDistanceTolerance))
+      node.fail("the node's place that follows from pose and nodes");
+  }
+}
+
+PlacedTube read_tube(const JsonPlace& place, std::size_t label) {
+  for (const char* key : {"id", "label"})
+    if (place.at(key).whole(0, std::numeric_limits<Label>::max()) != label)
+      place.at(key).fail(fmt::format("{}: tubes stand in the order of their labels", label));
+  PlacedTube placed;
+  Tube& tube = placed.tube;
+  tube.radius = place.at("radius").number();
+  if (tube.radius <= 0.0) place.at("radius").fail("a number above 0");
+  tube.wall_thickness = place.at("wall_thickness").number({0.0, tube.radius});
+  tube.mass = place.at("mass").number({0.0});
+  for (const JsonPlace& node : place.at("nodes").elements()) tube.nodes.push_back(node.vector());
+  if (tube.nodes.empty()) place.at("nodes").fail("at least one node");
+  tube.cylinders = read_cylinders(place.at("cylinders"), tube);
+  placed.world_from_tube = place.at("pose").pose();
+  place.at("length").expect_near(tube.length(), kDistanceTolerance);
+  check_nodes_in_world(place.at("nodes_in_world"), placed);
+  return placed;
+}
+
+std::size_t read_visible_pixels(const JsonPlace& place) {
+  const std::size_t pixels = place.at("visible_pixels").whole(0, std::numeric_limits<std::uint32_t>::max());
+  if (place.at("visible").flag() != (pixels > 0)) place.at("visible").fail("whether visible_pixels is above 0");
+  return pixels;
+}
+
+Contact read_contact(const JsonPlace& place, std::size_t tube_count) {
+  Contact contact;
+  contact.label_a = static_cast<Label>(place.at("label_a").whole(0, tube_count));
+  contact.label_b = static_cast<Label>(place.at("label_b").whole(0, tube_count));
+  if (contact.label_a >= contact.label_b) place.at("label_b").fail("above label_a");
+  contact.position = place.at("position").vector();
+  contact.normal = place.at("normal").vector();
+  contact.depth = place.at("depth").number();
+  return contact;
+}
+
+void check_consistent(const SceneRecord& record) {
+  const std::size_t tubes = record.scene.tubes.size();
+  if (record.colors.size() != tubes + 1 || record.tube_pixels.size() != tubes)
+    throw std::invalid_argument(fmt::format("scene {} of {} tubes with {} colours and {} pixel counts", record.id,
+                                            tubes, record.colors.size(), record.tube_pixels.size()));
+}
+
+}  // namespace
+
+std::string format_scene_json(const SceneRecord& record) {
+  check_consistent(record);
+  OrderedJson json = {
+      {"format", kFormat},
+      {"format_version", kFormatVersion},
+      {"tool_version", TUBEBIN_VERSION},
+      {"units", {{"length", "m"}, {"mass", "kg"}, {"angle_deg", "degree"}, {"image", "pixel"}}},
+      {"id", record.id},
+      {"seed", record.seed},
+      {"bin", bin_to_json(record.scene.bin, record.colors[0])},
+      {"scanner", scanner_to_json(record.scene.scanner, record.window)},
+      {"tubes", OrderedJson::array()},
+      {"contacts", OrderedJson::array()}};
+  for (std::size_t k = 0; k < record.scene.tubes.size(); ++k)
+    json["tubes"].push_back(
+        tube_to_json(record.scene.tubes[k], k + 1, record.colors[k + 1], record.tube_pixels[k]));
+  for (const Contact& contact : record.contacts) json["contacts"].push_back(contact_to_json(contact));
+  return format_json(json);
+}
+
+SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
+  const nlohmann::json json = parse_json(text, name);
+  const JsonPlace root(json, name);
+  read_header(root);
+  SceneRecord record;
+  record.id = root.at("id").text();
+  record.seed = root.at("seed").whole(0, std::numeric_limits<std::uint64_t>::max());
+  root.at("bin").fields([&](Fields& fields) { describe(fields, record.scene.bin); });
+  record.colors.push_back(read_color(root.at("bin").at("color")));
+  record.scene.scanner = read_scanner(root.at("scanner"));
+  record.window = read_window(root.at("scanner").at("window"), record.scene.scanner);
+  for (const JsonPlace& tube : root.at("tubes").elements()) {
+    record.scene.tubes.push_back(read_tube(tube, record.scene.tubes.size() + 1));
+    record.colors.push_back(read_color(tube.at("color")));
+    record.tube_pixels.push_back(read_visible_pixels(tube));
+  }
+  for (const JsonPlace& contact : root.at("contacts").elements())
+    record.contacts.push_back(read_contact(contact, record.scene.tubes.size()));
+  return record;
+}
+
+SceneRecord read_scene_json(const std::string& path) { return parse_scene_json(read_file(path), path); }
+
+}  // namespace tubebin

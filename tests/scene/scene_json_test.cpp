@@ -1,0 +1,219 @@
+#include "tubebin/scene/scene_json.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tubebin/cloud/label_colors.hpp"
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/error.hpp"
+#include "tubebin/core/random.hpp"
+#include "tubebin/tube/tube_generator.hpp"
+
+namespace tubebin {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+SceneRecord make_record(int tube_count) {
+  Random random(21);
+  SceneRecord record;
+  record.id = "A10/007";
+  record.seed = std::numeric_limits<std::uint64_t>::max() - 5;
+  record.scene.bin.height = 0.1 + 0.2;
+  record.scene.scanner.rotation_deg = {10.0, -5.0, 33.3};
+  record.scene.scanner.region = ScanRegion::full;
+  record.window = {700, 400, 500, 333};
+  for (Tube& tube : generate_tubes(tube_count, TubeOptions{}, random)) {
+    const Vec3 place(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 0.05);
+    record.scene.tubes.push_back({std::move(tube), make_pose(random.rotation(), place)});
+    record.tube_pixels.push_back(record.tube_pixels.size() * 1000);
+  }
+  record.colors = label_colors(static_cast<std::size_t>(tube_count));
+  if (tube_count > 1) record.contacts = {{0, 1, {0.1, 0.2, 0.0}, {0, 0, 1}, 1e-4}, {1, 2, {0, 0, 0.025}, {0, 0, 1}, -1e-5}};
+  return record;
+}
+
+SceneRecord parse(const std::string& text) { return parse_scene_json(text, "scene.json"); }
+
+TEST(SceneJson, EverythingReadsBackBitByBit) {
+  const SceneRecord record = make_record(10);
+  const SceneRecord back = parse(format_scene_json(record));
+  EXPECT_EQ(back.id, record.id);
+  EXPECT_EQ(back.seed, record.seed);
+  EXPECT_EQ(back.scene.bin, record.scene.bin);
+  EXPECT_EQ(back.scene.scanner.rotation_deg, record.scene.scanner.rotation_deg);
+  EXPECT_EQ(back.scene.scanner.horizontal_fov_deg, record.scene.scanner.horizontal_fov_deg);
+  EXPECT_EQ(back.scene.scanner.region, ScanRegion::full);
+  EXPECT_EQ(back.window, record.window);
+  EXPECT_EQ(back.colors, record.colors);
+  EXPECT_EQ(back.tube_pixels, record.tube_pixels);
+  ASSERT_EQ(back.scene.tubes.size(), record.scene.tubes.size());
+  for (std::size_t k = 0; k < record.scene.tubes.size(); ++k) {
+    EXPECT_EQ(back.scene.tubes[k].world_from_tube.matrix(), record.scene.tubes[k].world_from_tube.matrix());
+    EXPECT_EQ(back.scene.tubes[k].tube.nodes, record.scene.tubes[k].tube.nodes);
+    EXPECT_EQ(back.scene.tubes[k].tube.cylinders, record.scene.tubes[k].tube.cylinders);
+    EXPECT_EQ(back.scene.tubes[k].tube.mass, record.scene.tubes[k].tube.mass);
+  }
+  ASSERT_EQ(back.contacts.size(), 2U);
+  EXPECT_EQ(back.contacts[1].depth, -1e-5);
+  EXPECT_EQ(back.contacts[1].position, record.contacts[1].position);
+  EXPECT_EQ(format_scene_json(back), format_scene_json(record));
+}
+
+TEST(SceneJson, ASceneWithoutTubesReadsBack) {
+  const SceneRecord record = make_record(0);
+  EXPECT_EQ(format_scene_json(parse(format_scene_json(record))), format_scene_json(record));
+}
+
+TEST(SceneJson, ConvenienceValuesAreWhatTheySay) {
+  const SceneRecord record = make_record(3);
+  const json scene = json::parse(format_scene_json(record));
+  const json& tube = scene["tubes"][2];
+  const json& q = tube["pose"]["quaternion"];
+  const json& t = tube["pose"]["position"];
+  const json& node = tube["nodes"][1];
+  const Vec3 in_world =
+      Quat(q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>()) *
+          Vec3(node[0].get<double>(), node[1].get<double>(), node[2].get<double>()) +
+      Vec3(t[0].get<double>(), t[1].get<double>(), t[2].get<double>());
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(tube["nodes_in_world"][1][i].get<double>(), in_world[static_cast<int>(i)], 1e-12);
+  EXPECT_NEAR(tube["length"].get<double>(), 0.5, 1e-12);
+  // The image's right border is half the field of view off the axis.
+  const json& intrinsics = scene["scanner"]["intrinsics"];
+  const double half_fov = std::atan((1920.0 - intrinsics["cx"].get<double>()) / intrinsics["fx"].get<double>());
+  EXPECT_NEAR(2.0 * half_fov, radians(record.scene.scanner.horizontal_fov_deg), 1e-12);
+}
+
+TEST(SceneJson, AgreesWithItsSchema) {
+  const std::string path = ::testing::TempDir() + "tubebin_scene.json";
+  const auto validate = [&](const std::string& text) {
+    write_file_atomically(path, text);
+    const std::string command = "python3 " TUBEBIN_SOURCE_DIR "/tests/validate_json.py " TUBEBIN_SOURCE_DIR
+                                "/docs/scene.schema.json " + path;
+    const int status = std::system(command.c_str());
+    std::filesystem::remove(path);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  const std::string text = format_scene_json(make_record(4));
+  const int result = validate(text);
+  if (result == 77 || result == 127) GTEST_SKIP() << "needs python3 with jsonschema (Debian: python3-jsonschema)";
+  EXPECT_EQ(result, 0);
+  EXPECT_EQ(validate(format_scene_json(make_record(0))), 0);
+  json wrong = json::parse(text);
+  wrong["tubes"][1]["radius"] = -1;
+  EXPECT_EQ(validate(wrong.dump()), 1);
+}
+
+TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
+  const json schema = json::parse(read_file(TUBEBIN_SOURCE_DIR "/docs/scene.schema.json"));
+  const json scene = json::parse(format_scene_json(make_record(2)));
+  const auto keys = [](const json& object) {
+    std::set<std::string> names;
+    for (const auto& [key, value] : object.items()) names.insert(key);
+    return names;
+  };
+  const json& top = schema["properties"];
+  EXPECT_EQ(keys(scene), keys(top));
+  EXPECT_EQ(keys(scene["bin"]), keys(top["bin"]["properties"]));
+  EXPECT_EQ(keys(scene["scanner"]), keys(top["scanner"]["properties"]));
+  EXPECT_EQ(keys(scene["tubes"][0]), keys(schema["$defs"]["tube"]["properties"]));
+  EXPECT_EQ(keys(scene["contacts"][0]), keys(schema["$defs"]["contact"]["properties"]));
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    parse(text);
+  } catch (const IoError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// The error after setting what stands at the pointer.
+std::string error_with(const std::string& pointer, const json& value) {
+  json scene = json::parse(format_scene_json(make_record(3)));
+  scene[json::json_pointer(pointer)] = value;
+  return error_of(scene.dump());
+}
+
+std::string error_without(const std::string& parent, const std::string& key) {
+  json scene = json::parse(format_scene_json(make_record(3)));
+  scene[json::json_pointer(parent)].erase(key);
+  return error_of(scene.dump());
+}
+
+TEST(SceneJson, ErrorsNameThePlaceTheValueAndWhatIsValid) {
+  EXPECT_EQ(error_of(""), "scene.json: the file is empty; expected JSON");
+  EXPECT_EQ(error_of("{\n \"a\": 1,\n}"), "scene.json:3:1: not valid JSON");
+  EXPECT_EQ(error_of("[]"), "scene.json: /: [] is not valid; valid: an object");
+  EXPECT_EQ(error_of("{}"), "scene.json: /format: missing");
+  EXPECT_EQ(error_with("/tubes/1/radius", "thick"),
+            "scene.json: /tubes/1/radius: \"thick\" is not valid; valid: a finite number");
+  EXPECT_EQ(error_with("/tubes/2/nodes/0", {1, 2}),
+            "scene.json: /tubes/2/nodes/0: [1,2] is not valid; valid: a list of 3");
+  EXPECT_EQ(error_with("/scanner/region", "all"),
+            "scene.json: /scanner/region: \"all\" is not valid; valid: one of bin, full, tubes");
+  EXPECT_EQ(error_without("/tubes/0", "mass"), "scene.json: /tubes/0/mass: missing");
+  EXPECT_EQ(error_with("/format_version", 2),
+            "scene.json: /format_version: 2 is not valid; valid: 1, the version that this program reads");
+}
+
+TEST(SceneJson, ValuesThatCannotBeAreRefused) {
+  EXPECT_THAT(error_with("/seed", -1), HasSubstr("/seed: -1 is not valid"));
+  EXPECT_THAT(error_with("/bin/length", nullptr), HasSubstr("/bin/length: null is not valid"));
+  EXPECT_THAT(error_with("/bin/color", {0, 256, 0}), HasSubstr("/bin/color/1: 256"));
+  EXPECT_THAT(error_with("/scanner/width", 1.5), HasSubstr("/scanner/width: 1.5 is not valid; valid: a whole number"));
+  EXPECT_THAT(error_with("/scanner/width", 1e30), HasSubstr("/scanner/width"));
+  EXPECT_THAT(error_with("/scanner/range_max", 0.01), HasSubstr("beyond range_min"));
+  EXPECT_THAT(error_with("/scanner/window/width", 1900), HasSubstr("/scanner/window/width: 1900"));
+  EXPECT_THAT(error_with("/tubes/1/radius", 0), HasSubstr("/tubes/1/radius: 0 is not valid; valid: a number above 0"));
+  EXPECT_THAT(error_with("/tubes/1/label", 3), HasSubstr("/tubes/1/label: 3"));
+  EXPECT_THAT(error_with("/tubes/1/cylinders/0/node_b", 99), HasSubstr("/tubes/1/cylinders/0/node_b: 99"));
+  EXPECT_THAT(error_with("/tubes/1/cylinders/0/node_b", 0), HasSubstr("nodes at different places"));
+  EXPECT_THAT(error_with("/tubes/1/nodes", json::array()), HasSubstr("at least one node"));
+  EXPECT_THAT(error_with("/tubes/1/pose/rotation/0", {1, 1, 1}), HasSubstr("the rows of a rotation matrix"));
+  EXPECT_THAT(error_with("/tubes/1/pose/quaternion", {1, 0, 0, 0}), HasSubstr("unit quaternion"));
+  EXPECT_THAT(error_with("/tubes/1/length", 0.6), HasSubstr("/tubes/1/length: 0.6 is not valid"));
+  EXPECT_THAT(error_with("/tubes/1/nodes_in_world/0", {9, 9, 9}), HasSubstr("follows from pose and nodes"));
+  EXPECT_THAT(error_with("/tubes/1/visible", false), HasSubstr("visible_pixels"));
+  EXPECT_THAT(error_with("/contacts/0/label_b", 7), HasSubstr("/contacts/0/label_b: 7"));
+}
+
+TEST(SceneJson, KeysOfLaterVersionsAreLeftAlone) { EXPECT_EQ(error_with("/tubes/0/dent", 3), "no error"); }
+
+TEST(SceneJson, WhatIsNotFiniteIsNeverWritten) {
+  SceneRecord record = make_record(2);
+  record.contacts[0].depth = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(format_scene_json(record), std::invalid_argument);
+  record = make_record(2);
+  record.colors.pop_back();
+  EXPECT_THROW(format_scene_json(record), std::invalid_argument);
+}
+
+TEST(SceneJson, DamageAndDeepNestingAreSurvived) {
+  Random random(5);
+  const std::string whole = format_scene_json(make_record(1));
+  for (int round = 0; round < 2000; ++round) {
+    std::string damaged = whole.substr(0, random.integer(0, 4) ? whole.size() : random.bits() % whole.size());
+    for (int hit = random.integer(0, 3); hit > 0 && !damaged.empty(); --hit)
+      damaged[random.bits() % damaged.size()] = static_cast<char>(random.integer(0, 255));
+    const std::string error = error_of(damaged);
+    if (error != "no error") {
+      EXPECT_THAT(error, StartsWith("scene.json:"));
+    }
+  }
+  EXPECT_THAT(error_of(std::string(1'000'000, '[')), StartsWith("scene.json:"));
+}
+
+}  // namespace
+}  // namespace tubebin
