@@ -103,12 +103,38 @@ class MarkdownTable : public TextFields {
   std::string prefix_;
 };
 
+class KeyValueList : public TextFields {
+ public:
+  void group(const char* key, const char*, const std::function<void(Fields&)>& describe_inner) override {
+    const std::string outer = prefix_;
+    prefix_ += std::string(key) + ".";
+    describe_inner(*this);
+    prefix_ = outer;
+  }
+  std::vector<KeyValue> list;
+
+ protected:
+  void entry(const std::string& key, const std::string& value, const std::string&, const std::string&,
+             const std::string&) override {
+    list.push_back({prefix_ + key, value});
+  }
+
+ private:
+  std::string prefix_;
+};
+
 }  // namespace
 
 std::string write_yaml(const std::function<void(Fields&)>& describe) {
   YamlText writer;
   describe(writer);
   return writer.str();
+}
+
+std::vector<KeyValue> list_fields(const std::function<void(Fields&)>& describe) {
+  KeyValueList fields;
+  describe(fields);
+  return fields.list;
 }
 
 std::string document_fields(const std::function<void(Fields&)>& describe) {

@@ -36,6 +36,17 @@ KeyPlaces read_yaml_text(const std::string& text, const std::string& name,
 /// The fields as YAML that reads back to the same values, each with its unit and effect as a comment.
 std::string write_yaml(const std::function<void(Fields&)>& describe);
 
+/// One field as texts: "tube.radius", "0.0125".
+struct KeyValue {
+  std::string key_path;
+  std::string value;
+
+  friend bool operator==(const KeyValue&, const KeyValue&) = default;
+};
+
+/// The fields in their order, for comparing two configurations key by key.
+std::vector<KeyValue> list_fields(const std::function<void(Fields&)>& describe);
+
 /// The fields as a Markdown table: key, default, unit, valid values, effect.
 std::string document_fields(const std::function<void(Fields&)>& describe);
 

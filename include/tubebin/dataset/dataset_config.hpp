@@ -1,0 +1,56 @@
+/// What one data set is made from: everything that decides its bytes, and how many scenes of it are wanted.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/core/yaml.hpp"
+#include "tubebin/physics/drop_simulator.hpp"
+#include "tubebin/scene/scene.hpp"
+#include "tubebin/tube/tube_generator.hpp"
+
+namespace tubebin {
+
+/// The version of this library, as it stands in every data set.
+const char* tool_version();
+
+struct OutputOptions {
+  CloudFormat format = CloudFormat::pcd_binary;
+  bool preview = false;  ///< a rendered picture and the ground-truth image beside each cloud
+};
+
+struct DatasetConfig {
+  std::string tool_version;            ///< that makes the data set
+  std::string set = "A";               ///< scenes are called <set><tubes>/<case>
+  std::uint64_t seed = 1;
+  std::vector<int> tubes = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 20};
+  int cases = 20;                      ///< scenes for each number of tubes
+  int attempts_max = 50;               ///< per scene
+  double attempt_time_limit = 120.0;   ///< seconds of wall-clock time, per attempt
+  TubeOptions tube;
+  Bin bin;
+  PhysicsOptions physics;
+  Scanner scanner;
+  OutputOptions output;
+};
+
+void describe(Fields& fields, DatasetConfig& config);
+/// The configuration as `describe` wants it bound, for read_yaml_*, write_yaml and the like.
+std::function<void(Fields&)> fields_of(DatasetConfig& config);
+
+/// Reads and checks a configuration file, for this tool version. Throws ConfigError with file:line:column, key, value and what is valid.
+DatasetConfig load_config(const std::string& path);
+/// Throws ConfigError where values contradict each other; `places` says where each was set.
+void check(const DatasetConfig& config, const KeyPlaces& places);
+
+/// The configuration as a file that load_config reads back to the same values.
+std::string format_config(const DatasetConfig& config);
+
+/// Keys whose values decide a scene's bytes and differ: "tube.radius: 0.0125 there, 0.01 here".
+std::vector<std::string> differences(const DatasetConfig& there, const DatasetConfig& here);
+
+/// "1,5,10-15" -> 1, 5, 10, 11, ..., 15. Throws ConfigError naming the part that is no number or range.
+std::vector<int> parse_tube_counts(const std::string& text);
+
+}  // namespace tubebin

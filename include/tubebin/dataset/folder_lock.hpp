@@ -1,0 +1,25 @@
+/// One run at a time in one output folder.
+#pragma once
+
+#include <string>
+
+namespace tubebin {
+
+/// Holds an advisory lock on `folder`/.lock while it lives. Processes forked from its holder share it, so it is free
+/// once all of them have ended, however they ended.
+class FolderLock {
+ public:
+  enum class Kind { exclusive, shared };
+
+  /// Throws ConfigError where another run holds the folder (naming its process) and IoError where the lock file
+  /// can't be made.
+  explicit FolderLock(const std::string& folder, Kind kind = Kind::exclusive);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace tubebin

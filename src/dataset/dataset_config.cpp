@@ -1,0 +1,130 @@
+#include "tubebin/dataset/dataset_config.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+namespace tubebin {
+namespace {
+
+constexpr Limits kTubeCountLimits = {1, 10000};
+
+/// These say how much is wanted and how long to try; a finished scene's bytes don't depend on them.
+const std::set<std::string> kKeysOfExtent = {"tubes", "cases", "attempts_max", "attempt_time_limit"};
+
+void check_set_name(const DatasetConfig& config, const KeyPlaces& places) {
+  const auto is_valid = [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' || c == '-';
+  };
+  if (config.set.empty() || config.set.size() > 40 || !std::all_of(config.set.begin(), config.set.end(), is_valid))
+    places.fail("set", fmt::format("'{}' is not valid; valid: 1 to 40 letters, '_' or '-' (it begins the names of "
+                                   "folders, and digits after it count tubes)",
+                                   config.set));
+}
+
+void check_tubes_once(const DatasetConfig& config, const KeyPlaces& places) {
+  std::set<int> seen;
+  for (const int count : config.tubes)
+    if (!seen.insert(count).second) places.fail("tubes", fmt::format("{} stands in the list twice", count));
+}
+
+void check_version(const DatasetConfig& config, const KeyPlaces& places) {
+  if (!config.tool_version.empty() && config.tool_version != tool_version())
+    places.fail("tool_version", fmt::format("'{}' made this file and '{}' is running, whose scenes may differ; "
+                                            "remove the key to use the configuration with this version",
+                                            config.tool_version, tool_version()));
+}
+
+int parse_count(const std::string& text, const std::string& whole) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < kTubeCountLimits.min ||
+      value > kTubeCountLimits.max)
+    throw_config_error("tubes: '{}' in '{}' is not valid; valid: numbers of tubes from {} to {} and ranges of them, "
+                       "as 1,5,10-15",
+                       text, whole, kTubeCountLimits.min, kTubeCountLimits.max);
+  return value;
+}
+
+}  // namespace
+
+const char* tool_version() { return TUBEBIN_VERSION; }
+
+void describe(Fields& fields, DatasetConfig& config) {
+  fields.text("tool_version", config.tool_version, "version that made the data set; leave it out when writing a file");
+  fields.text("set", config.set, "name of the set; scenes are called <set><tubes>/<case>, as A10/007");
+  fields.seed("seed", config.seed, "of all randomness; another seed makes other scenes");
+  fields.integers("tubes", config.tubes, kTubeCountLimits, "numbers of tubes in the bin, each with its own scenes");
+  fields.integer("cases", config.cases, {1, 1000000}, "", "scenes for each number of tubes");
+  fields.integer("attempts_max", config.attempts_max, {1, 100000}, "",
+                 "attempts, each with a seed of its own, until a scene is given up");
+  fields.number("attempt_time_limit", config.attempt_time_limit, {0.1, 86400.0}, "s",
+                "wall-clock time after which an attempt counts as failed; far above what any attempt needs, since "
+                "hitting it depends on the machine");
+  fields.group("tube", "shape of the tubes (paper, Algorithms 1 to 3)",
+               [&](Fields& inner) { describe(inner, config.tube); });
+  fields.group("bin", "inner size of the bin", [&](Fields& inner) { describe(inner, config.bin); });
+  fields.group("physics", "the drop and the checks of its result",
+               [&](Fields& inner) { describe(inner, config.physics); });
+  fields.group("scanner", "the virtual 3D scanner", [&](Fields& inner) { describe(inner, config.scanner); });
+  fields.group("output", "what is written for each scene", [&](Fields& inner) {
+    inner.choice("format", config.output.format, {"pcd_binary", "pcd_compressed", "pcd_ascii", "ply_binary"},
+                 "file format of the cloud");
+    inner.flag("preview", config.output.preview, "also render preview.png and the ground-truth image labels.png");
+  });
+}
+
+std::function<void(Fields&)> fields_of(DatasetConfig& config) {
+  return [&config](Fields& fields) { describe(fields, config); };
+}
+
+void check(const DatasetConfig& config, const KeyPlaces& places) {
+  check_version(config, places);
+  check_set_name(config, places);
+  check_tubes_once(config, places);
+  check(config.tube, places, "tube");
+  check(config.physics, places, "physics");
+  check(config.scanner, places, "scanner");
+}
+
+DatasetConfig load_config(const std::string& path) {
+  DatasetConfig config;
+  check(config, read_yaml_file(path, fields_of(config)));
+  config.tool_version = tool_version();
+  return config;
+}
+
+std::string format_config(const DatasetConfig& config) {
+  DatasetConfig fields = config;
+  return write_yaml(fields_of(fields));
+}
+
+std::vector<std::string> differences(const DatasetConfig& there, const DatasetConfig& here) {
+  DatasetConfig there_fields = there;
+  DatasetConfig here_fields = here;
+  const std::vector<KeyValue> a = list_fields(fields_of(there_fields));
+  const std::vector<KeyValue> b = list_fields(fields_of(here_fields));
+  std::vector<std::string> differing;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (a[i].value != b[i].value && !kKeysOfExtent.contains(a[i].key_path))
+      differing.push_back(fmt::format("{}: {} there, {} here", a[i].key_path, a[i].value, b[i].value));
+  return differing;
+}
+
+std::vector<int> parse_tube_counts(const std::string& text) {
+  std::vector<int> counts;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    const std::size_t dash = part.find('-');
+    const int first = parse_count(part.substr(0, dash), text);
+    const int last = dash == std::string::npos ? first : parse_count(part.substr(dash + 1), text);
+    if (last < first) throw_config_error("tubes: the range '{}' in '{}' ends before it begins", part, text);
+    for (int count = first; count <= last; ++count) counts.push_back(count);
+    begin = end + 1;
+  }
+  return counts;
+}
+
+}  // namespace tubebin

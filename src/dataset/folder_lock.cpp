@@ -1,0 +1,66 @@
+#include "tubebin/dataset/folder_lock.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include "tubebin/core/error.hpp"
+
+namespace tubebin {
+namespace {
+
+// The workers of a run that was killed take a moment to die; so long a start waits for them.
+constexpr auto kPatience = std::chrono::seconds(2);
+
+bool try_to_lock(int descriptor, FolderLock::Kind kind) {
+  const int operation = (kind == FolderLock::Kind::exclusive ? LOCK_EX : LOCK_SH) | LOCK_NB;
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (flock(descriptor, operation) != 0) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return true;
+}
+
+/// "process 1234" as the holder wrote it.
+std::string holder(int descriptor) {
+  std::array<char, 32> text{};
+  const ssize_t size = pread(descriptor, text.data(), text.size(), 0);
+  return size > 0 ? "process " + std::string(text.data(), static_cast<std::size_t>(size)) : "another process";
+}
+
+void write_holder(int descriptor) {
+  const std::string text = fmt::format("{}", getpid());
+  // Only for the message above: where it can't be written, the lock holds all the same.
+  if (ftruncate(descriptor, 0) == 0 && pwrite(descriptor, text.data(), text.size(), 0) < 0) return;
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const std::string& folder, Kind kind) {
+  const std::string path = folder + "/.lock";
+  const bool exclusive = kind == Kind::exclusive;
+  descriptor_ = open(path.c_str(), exclusive ? O_RDWR | O_CREAT | O_CLOEXEC : O_RDONLY | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) {
+    if (!exclusive) return;  // nobody ever locked it
+    throw_io_error("{}: cannot be written: {}", path, std::strerror(errno));
+  }
+  if (!try_to_lock(descriptor_, kind)) {
+    const std::string other = holder(descriptor_);
+    close(descriptor_);
+    throw_config_error("{}: {} is writing to this folder; wait for its end or choose another folder", folder, other);
+  }
+  if (exclusive) write_holder(descriptor_);
+}
+
+FolderLock::~FolderLock() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+}  // namespace tubebin

@@ -1,0 +1,236 @@
+#include "tubebin/dataset/worker_pool.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "worker_process.hpp"
+
+namespace tubebin {
+namespace {
+
+constexpr double kTickSeconds = 0.1;
+constexpr double kGraceSeconds = 1.0;  // for running attempts, after a signal asked to stop
+// An attempt that is killed from outside so often is too large for the machine's memory, say.
+constexpr int kKillsMax = 5;
+
+volatile std::sig_atomic_t received_signal = 0;
+void note_signal(int signal) { received_signal = signal; }
+
+/// Catches the signals that ask to stop. They are blocked except where `ppoll` waits, so none is missed.
+class StopSignals {
+ public:
+  StopSignals() {
+    received_signal = 0;
+    sigset_t blocked;
+    sigemptyset(&blocked);
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+      struct sigaction action {};
+      sigaction(kSignals[i], nullptr, &previous_actions_[i]);
+      if (previous_actions_[i].sa_handler == SIG_IGN) continue;  // as nohup asks
+      action.sa_handler = note_signal;
+      sigaction(kSignals[i], &action, nullptr);
+      sigaddset(&blocked, kSignals[i]);
+    }
+    sigprocmask(SIG_BLOCK, &blocked, &previous_mask_);
+  }
+  ~StopSignals() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &previous_actions_[i], nullptr);
+    sigprocmask(SIG_SETMASK, &previous_mask_, nullptr);
+  }
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+  const sigset_t& mask_while_waiting() const { return previous_mask_; }
+  int received() const { return received_signal; }
+
+ private:
+  static constexpr std::array<int, 3> kSignals = {SIGINT, SIGTERM, SIGHUP};
+  std::array<struct sigaction, kSignals.size()> previous_actions_{};
+  sigset_t previous_mask_{};
+};
+
+/// Seconds in which this process ran: a pause of the whole run (Ctrl-Z, a suspended machine) counts as one tick.
+class RunningClock {
+ public:
+  double now() {
+    const auto time = std::chrono::steady_clock::now();
+    seconds_ += std::min(std::chrono::duration<double>(time - last_).count(), 10.0 * kTickSeconds);
+    last_ = time;
+    return seconds_;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  double seconds_ = 0.0;
+};
+
+struct Worker {
+  std::unique_ptr<WorkerProcess> process;
+  std::optional<JobOutcome> job;  ///< in work; none: idle
+  int kills = 0;                  ///< of the current attempt, from outside
+  double attempt_start = 0.0;
+};
+
+class Pool {
+ public:
+  Pool(const std::vector<std::size_t>& jobs, const PoolOptions& options, const Work& work, const PoolEvents& events)
+      : waiting_(jobs.begin(), jobs.end()),
+        options_(options),
+        work_(work),
+        events_(events),
+        workers_(std::min(jobs.size(), static_cast<std::size_t>(std::max(options.workers, 1)))) {}
+
+  PoolReport run() {
+    for (Worker& worker : workers_) give_next_job(worker);
+    while (any_busy() && !stopped()) {
+      wait_for_answers();
+      for (Worker& worker : workers_) enforce_time_limit(worker);
+      events_.on_tick();
+    }
+    report_.signal = any_busy() || !waiting_.empty() ? signals_.received() : 0;
+    return report_;
+  }
+
+ private:
+  bool any_busy() const {
+    return std::any_of(workers_.begin(), workers_.end(), [](const Worker& worker) { return worker.job.has_value(); });
+  }
+
+  bool stopping() const { return signals_.received() != 0; }
+
+  bool stopped() {
+    if (!stopping()) return false;
+    if (!stop_time_) stop_time_ = clock_.now();
+    return clock_.now() - *stop_time_ > kGraceSeconds;
+  }
+
+  void wait_for_answers() {
+    std::vector<pollfd> sockets;
+    for (const Worker& worker : workers_)
+      sockets.push_back({.fd = worker.job ? worker.process->socket() : -1, .events = POLLIN, .revents = 0});
+    const timespec timeout = {.tv_sec = 0, .tv_nsec = static_cast<long>(kTickSeconds * 1e9)};
+    if (ppoll(sockets.data(), sockets.size(), &timeout, &signals_.mask_while_waiting()) <= 0) return;
+    for (std::size_t i = 0; i < workers_.size(); ++i)
+      if (sockets[i].revents != 0) handle_answer(workers_[i]);
+  }
+
+  void give_next_job(Worker& worker) {
+    worker.job.reset();
+    if (waiting_.empty() || stopping()) {
+      worker.process.reset();
+      return;
+    }
+    worker.job = JobOutcome{.job = waiting_.front(), .succeeded = false, .text = "", .failed = {}, .seconds = 0.0};
+    waiting_.pop_front();
+    worker.kills = 0;
+    start_attempt(worker);
+  }
+
+  void start_attempt(Worker& worker) {
+    worker.attempt_start = clock_.now();
+    const Attempt attempt{.job = worker.job->job, .number = static_cast<int>(worker.job->failed.size())};
+    while (!worker.process || !worker.process->start(attempt)) start_process(worker);
+  }
+
+  void start_process(Worker& worker) {
+    worker.process.reset();
+    std::vector<int> others;
+    for (const Worker& other : workers_)
+      if (other.process) others.push_back(other.process->socket());
+    worker.process = std::make_unique<WorkerProcess>(work_, others);
+  }
+
+  void handle_answer(Worker& worker) {
+    const WorkerAnswer answer = worker.process->answer();
+    switch (answer.kind) {
+      case WorkerAnswer::Kind::io_error: throw IoError(answer.message);
+      case WorkerAnswer::Kind::config_error: throw ConfigError(answer.message);
+      case WorkerAnswer::Kind::died: return handle_death(worker);
+      case WorkerAnswer::Kind::result: break;
+    }
+    if (!answer.result.succeeded) return fail_attempt(worker, answer.result.text, answer.result.detail);
+    worker.job->succeeded = true;
+    worker.job->text = answer.result.text;
+    finish_job(worker);
+  }
+
+  void handle_death(Worker& worker) {
+    const int signal = worker.process->wait();
+    worker.process.reset();
+    const bool from_outside = signal == SIGKILL || signal == SIGTERM;
+    if (!from_outside)
+      return fail_attempt(worker, "crash", signal != 0 ? fmt::format("its process was ended by signal {} ({})", signal,
+                                                                     strsignal(signal))
+                                                       : "its process ended by itself");
+    if (++worker.kills >= kKillsMax)
+      return fail_attempt(worker, "killed", fmt::format("its process was killed {} times", kKillsMax));
+    if (!stopping()) return start_attempt(worker);
+    give_up_until_next_run(worker);
+  }
+
+  void enforce_time_limit(Worker& worker) {
+    if (!worker.job || clock_.now() - worker.attempt_start <= options_.attempt_time_limit) return;
+    worker.process.reset();
+    fail_attempt(worker, "timeout", fmt::format("no result after {} s", options_.attempt_time_limit));
+  }
+
+  void fail_attempt(Worker& worker, const std::string& reason, const std::string& detail) {
+    JobOutcome& job = *worker.job;
+    job.failed.push_back({static_cast<int>(job.failed.size()), reason, detail});
+    worker.kills = 0;
+    events_.on_failed_attempt(job.job, job.failed.back());
+    if (static_cast<int>(job.failed.size()) >= options_.attempts_max) return finish_job(worker);
+    if (stopping()) return give_up_until_next_run(worker);
+    job.seconds += clock_.now() - worker.attempt_start;
+    start_attempt(worker);
+  }
+
+  /// The next run makes the job anew, from its first attempt.
+  void give_up_until_next_run(Worker& worker) {
+    waiting_.push_front(worker.job->job);
+    worker.job.reset();
+  }
+
+  void finish_job(Worker& worker) {
+    worker.job->seconds += clock_.now() - worker.attempt_start;
+    ++(worker.job->succeeded ? report_.succeeded : report_.failed);
+    const JobOutcome outcome = std::move(*worker.job);
+    give_next_job(worker);  // first, so that no worker waits for the caller's bookkeeping
+    events_.on_finished(outcome);
+  }
+
+  StopSignals signals_;
+  RunningClock clock_;
+  std::deque<std::size_t> waiting_;
+  PoolOptions options_;
+  const Work& work_;
+  const PoolEvents& events_;
+  std::vector<Worker> workers_;
+  std::optional<double> stop_time_;
+  PoolReport report_;
+};
+
+}  // namespace
+
+PoolReport run_jobs(const std::vector<std::size_t>& jobs, const PoolOptions& options, const Work& work,
+                    const PoolEvents& events) {
+  return Pool(jobs, options, work, events).run();
+}
+
+int available_cores() {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  if (sched_getaffinity(0, sizeof(cores), &cores) != 0) return 1;
+  return std::max(CPU_COUNT(&cores), 1);
+}
+
+}  // namespace tubebin

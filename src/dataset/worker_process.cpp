@@ -1,0 +1,138 @@
+#include "worker_process.hpp"
+
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+namespace tubebin {
+namespace {
+
+// Longest text of an answer: a message must fit into the socket's buffer.
+constexpr std::size_t kLongestText = 48 * 1024;
+// What a message begins with.
+constexpr char kSucceeded = 's', kFailed = 'f', kIoError = 'i', kConfigError = 'c';
+// Divides a failure's reason from its detail.
+constexpr char kDivider = '\n';
+
+void send_text(int socket, char kind, std::string text) {
+  if (text.size() > kLongestText) {  // a message may lose its end, a result may not
+    if (kind == kSucceeded) throw std::length_error("the attempt's result is too long to be handed over");
+    text.resize(kLongestText);
+  }
+  text.insert(text.begin(), kind);
+  while (send(socket, text.data(), text.size(), MSG_NOSIGNAL) < 0)
+    if (errno != EINTR) _exit(1);  // the parent is gone
+}
+
+void make_attempt(int socket, const Work& work, const Attempt& attempt) {
+  try {
+    const AttemptResult result = work(attempt.job, attempt.number);
+    if (result.succeeded)
+      send_text(socket, kSucceeded, result.text);
+    else
+      send_text(socket, kFailed, result.text + kDivider + result.detail);
+  } catch (const IoError& error) {
+    send_text(socket, kIoError, error.what());
+  } catch (const ConfigError& error) {
+    send_text(socket, kConfigError, error.what());
+  } catch (const std::exception& error) {
+    send_text(socket, kFailed, std::string("crash") + kDivider + error.what());
+  }
+}
+
+[[noreturn]] void serve(int socket, const Work& work) {
+  Attempt attempt;
+  while (true) {
+    const ssize_t size = recv(socket, &attempt, sizeof(attempt), 0);
+    if (size < 0 && errno == EINTR) continue;
+    if (size != sizeof(attempt)) _exit(0);  // the parent has no more work or is gone
+    make_attempt(socket, work, attempt);
+  }
+}
+
+/// Ctrl-C reaches every process of a terminal: workers leave the answer to it to their parent.
+void set_signals_of_worker() {
+  signal(SIGINT, SIG_IGN);
+  signal(SIGHUP, SIG_IGN);
+  signal(SIGTERM, SIG_DFL);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+}
+
+}  // namespace
+
+FileDescriptor::~FileDescriptor() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+WorkerProcess::WorkerProcess(const Work& work, const std::vector<int>& others) {
+  std::array<int, 2> ends{};
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw_io_error("cannot make a socket for a worker process: {}", std::strerror(errno));
+  socket_ = FileDescriptor(ends[0]);
+  FileDescriptor worker_end(ends[1]);
+  const pid_t parent = getpid();
+  process_ = fork();
+  if (process_ < 0) throw_io_error("cannot start a worker process: {}", std::strerror(errno));
+  if (process_ > 0) return;
+
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);  // it died before the line above
+  set_signals_of_worker();
+  close(ends[0]);
+  for (const int other : others) close(other);
+  serve(ends[1], work);
+}
+
+WorkerProcess::~WorkerProcess() {
+  kill();
+  wait();
+}
+
+bool WorkerProcess::start(const Attempt& attempt) {
+  while (true) {
+    const ssize_t size = send(socket_.get(), &attempt, sizeof(attempt), MSG_NOSIGNAL);
+    if (size == sizeof(attempt)) return true;
+    if (size < 0 && errno != EINTR) return false;
+  }
+}
+
+WorkerAnswer WorkerProcess::answer() {
+  std::vector<char> buffer(kLongestText + 1);
+  ssize_t size = 0;
+  do size = recv(socket_.get(), buffer.data(), buffer.size(), 0);
+  while (size < 0 && errno == EINTR);
+  if (size <= 0) return {};
+  const std::string text(buffer.data() + 1, static_cast<std::size_t>(size) - 1);
+  switch (buffer[0]) {
+    case kIoError: return {WorkerAnswer::Kind::io_error, {}, text};
+    case kConfigError: return {WorkerAnswer::Kind::config_error, {}, text};
+    case kSucceeded: return {WorkerAnswer::Kind::result, {true, text, ""}, ""};
+    default: break;
+  }
+  const std::size_t divider = std::min(text.find(kDivider), text.size());
+  return {WorkerAnswer::Kind::result,
+          {false, text.substr(0, divider), text.substr(std::min(divider + 1, text.size()))},
+          ""};
+}
+
+void WorkerProcess::kill() {
+  if (!end_signal_) ::kill(process_, SIGKILL);
+}
+
+int WorkerProcess::wait() {
+  if (end_signal_) return *end_signal_;
+  int status = 0;
+  while (waitpid(process_, &status, 0) < 0 && errno == EINTR) continue;
+  end_signal_ = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  return *end_signal_;
+}
+
+}  // namespace tubebin

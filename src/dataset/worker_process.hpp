@@ -1,0 +1,66 @@
+/// One forked worker process and the socket to it. Messages keep their boundaries (SOCK_SEQPACKET).
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <vector>
+
+#include "tubebin/core/error.hpp"
+#include "tubebin/dataset/worker_pool.hpp"
+
+namespace tubebin {
+
+struct Attempt {
+  std::size_t job = 0;
+  int number = 0;
+};
+
+/// A file descriptor that is closed with its owner.
+class FileDescriptor {
+ public:
+  explicit FileDescriptor(int descriptor = -1) : descriptor_(descriptor) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    return *this;
+  }
+  ~FileDescriptor();
+  int get() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+/// How a worker answered or ended.
+struct WorkerAnswer {
+  enum class Kind { result, io_error, config_error, died } kind = Kind::died;
+  AttemptResult result;     ///< of Kind::result
+  std::string message;      ///< of the errors
+};
+
+class WorkerProcess {
+ public:
+  /// Forks. `others` are the sockets of the caller's other workers, which the new process must not keep open.
+  WorkerProcess(const Work& work, const std::vector<int>& others);
+  /// Kills the process where it still runs, and waits for its end.
+  ~WorkerProcess();
+  WorkerProcess(const WorkerProcess&) = delete;
+  WorkerProcess& operator=(const WorkerProcess&) = delete;
+
+  /// Readable when the worker answered or died.
+  int socket() const { return socket_.get(); }
+  /// False where the worker is dead already.
+  bool start(const Attempt& attempt);
+  WorkerAnswer answer();
+  void kill();
+  /// Waits for the end of a process that died or was killed: the signal that ended it, or 0.
+  int wait();
+
+ private:
+  FileDescriptor socket_;
+  pid_t process_ = -1;
+  std::optional<int> end_signal_;
+};
+
+}  // namespace tubebin
