@@ -11,6 +11,7 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(ODE REQUIRED IMPORTED_TARGET ode)
 add_library(tubebin::ode ALIAS PkgConfig::ODE)
 
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)
 add_library(tubebin::osmesa ALIAS PkgConfig::OSMESA)
 

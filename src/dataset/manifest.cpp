@@ -4,14 +4,13 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "file_descriptor.hpp"
+#include "tubebin/core/atomic_file.hpp"
 
 namespace tubebin {
 namespace {
@@ -30,12 +29,6 @@ DropFigures physics_from(const Json& json) {
           .simulated_seconds = json.at("simulated_seconds"),
           .deepest_penetration = json.at("deepest_penetration"),
           .largest_drift = json.at("largest_drift")};
-}
-
-std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw_io_error("{}: cannot be read: {}", path, std::strerror(errno));
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 }  // namespace
@@ -72,15 +65,14 @@ ManifestRecord parse_manifest_record(const std::string& line) {
   return record;
 }
 
-FileRecord record_file(const std::string& path) {
-  const std::string text = read_text(path);
-  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
-  return {.bytes = text.size(), .xxh128 = fmt::format("{:016x}{:016x}", hash.high64, hash.low64)};
+FileRecord record_bytes(std::string_view bytes) {
+  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+  return {.bytes = bytes.size(), .xxh128 = fmt::format("{:016x}{:016x}", hash.high64, hash.low64)};
 }
 
 Manifest::Manifest(const std::string& folder) : path_(folder + "/manifest.jsonl") {
   if (!std::filesystem::exists(path_)) return;
-  const std::string text = read_text(path_);
+  const std::string text = read_file(path_);
   std::size_t begin = 0;
   for (int line_number = 1; begin < text.size(); ++line_number) {
     const std::size_t end = text.find('\n', begin);
@@ -91,7 +83,7 @@ Manifest::Manifest(const std::string& folder) : path_(folder + "/manifest.jsonl"
     } catch (const IoError& error) {
       damaged_lines_.push_back(fmt::format("{}:{}: {}", path_, line_number, error.what()));
     }
-    begin = end + 1;
+    begin = complete_bytes_ = end + 1;
   }
 }
 
@@ -104,14 +96,16 @@ void Manifest::append(const ManifestRecord& record) {
   const FileDescriptor file(open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
   const auto fail = [&] { throw_io_error("{}: cannot be written: {}", path_, std::strerror(errno)); };
   if (file.get() < 0) fail();
-  const off_t length = end_of_complete_lines(file.get());
   const std::string line = format_manifest_record(record) + '\n';
-  if (length < 0 || ftruncate(file.get(), length) != 0) fail();
-  if (pwrite(file.get(), line.data(), line.size(), length) != static_cast<ssize_t>(line.size())) {
+  const auto end = static_cast<off_t>(complete_bytes_);
+  if (ftruncate(file.get(), end) != 0) fail();  // what a kill left after the last complete line
+  errno = ENOSPC;                               // what a short write means
+  if (pwrite(file.get(), line.data(), line.size(), end) != static_cast<ssize_t>(line.size())) {
     const int cause = errno;
-    if (ftruncate(file.get(), length) == 0) errno = cause;
+    if (ftruncate(file.get(), end) == 0) errno = cause;
     fail();
   }
+  complete_bytes_ += line.size();
   records_[record.id] = record;
 }
 

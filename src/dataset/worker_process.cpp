@@ -68,10 +68,6 @@ void set_signals_of_worker() {
 
 }  // namespace
 
-FileDescriptor::~FileDescriptor() {
-  if (descriptor_ >= 0) close(descriptor_);
-}
-
 WorkerProcess::WorkerProcess(const Work& work, const std::vector<int>& others) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "tubebin/core/error.hpp"
+#include "file_descriptor.hpp"
 #include "tubebin/dataset/worker_pool.hpp"
 
 namespace tubebin {
@@ -14,22 +14,6 @@ namespace tubebin {
 struct Attempt {
   std::size_t job = 0;
   int number = 0;
-};
-
-/// A file descriptor that is closed with its owner.
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int descriptor = -1) : descriptor_(descriptor) {}
-  FileDescriptor(FileDescriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
-  }
-  ~FileDescriptor();
-  int get() const { return descriptor_; }
-
- private:
-  int descriptor_;
 };
 
 /// How a worker answered or ended.

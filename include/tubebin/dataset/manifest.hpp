@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tubebin/dataset/worker_pool.hpp"
@@ -33,8 +34,8 @@ std::string format_manifest_record(const ManifestRecord& record);
 /// Throws IoError saying what is missing or wrong.
 ManifestRecord parse_manifest_record(const std::string& line);
 
-/// Size and hash of a file as it stands on the disk. Throws IoError.
-FileRecord record_file(const std::string& path);
+/// Size and hash of a file's bytes.
+FileRecord record_bytes(std::string_view bytes);
 
 class Manifest {
  public:
@@ -52,6 +53,7 @@ class Manifest {
 
  private:
   std::string path_;
+  std::size_t complete_bytes_ = 0;  // up to the end of the last complete line
   std::map<std::string, ManifestRecord> records_;
   std::vector<std::string> damaged_lines_;
 };

@@ -1,0 +1,43 @@
+/// The output folder of one data set: locked, made by one configuration, with its manifest and scenes.
+#pragma once
+
+#include <string>
+
+#include "tubebin/dataset/dataset_config.hpp"
+#include "tubebin/dataset/folder_lock.hpp"
+#include "tubebin/dataset/manifest.hpp"
+#include "tubebin/dataset/scene_store.hpp"
+
+namespace tubebin {
+
+/// The configuration of an existing data set, of whatever version. Throws IoError where the folder has none,
+/// ConfigError where it can't be read.
+DatasetConfig read_dataset_config(const std::string& folder);
+
+/// A data set open for generation. Whatever a killed run left unfinished is gone.
+class DatasetFolder {
+ public:
+  /// Makes the folder, or continues the one that is there: it may gain tubes and cases. Throws ConfigError where
+  /// another run holds it or another configuration, seed or version made it (with all differing keys), IoError
+  /// where it can't be written.
+  DatasetFolder(const std::string& folder, const DatasetConfig& config);
+
+  const std::string& path() const { return folder_; }
+  /// All scenes that were ever asked for.
+  const DatasetConfig& config() const { return config_; }
+  Manifest& manifest() { return manifest_; }
+  const Manifest& manifest() const { return manifest_; }
+  const SceneStore& store() const { return store_; }
+
+  /// True where the scene is recorded and its files are there.
+  bool is_complete(const std::string& scene_name) const;
+
+ private:
+  std::string folder_;
+  FolderLock lock_;
+  DatasetConfig config_;
+  SceneStore store_;
+  Manifest manifest_;
+};
+
+}  // namespace tubebin

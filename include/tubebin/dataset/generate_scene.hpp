@@ -1,0 +1,24 @@
+/// One scene of a data set, from its seed to its content.
+#pragma once
+
+#include <optional>
+
+#include "tubebin/dataset/scene_store.hpp"
+
+namespace tubebin {
+
+struct GeneratedScene {
+  DropFailure failure = DropFailure::none;
+  std::string failure_detail;
+  SceneContent content;                   ///< empty after a failure
+  DropFigures physics;
+  std::map<std::string, double> seconds;  ///< wall-clock time of each stage
+};
+
+/// Seed of the attempt (from 0) at the scene.
+std::uint64_t attempt_seed(const DatasetConfig& config, const SceneId& id, int attempt);
+
+/// Generates, drops and scans. The result depends on the arguments (and the tool's version) alone.
+GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, int attempt);
+
+}  // namespace tubebin

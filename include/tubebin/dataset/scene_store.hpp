@@ -1,0 +1,45 @@
+/// The scene folders of a data set. A scene appears whole or not at all: it is written into a folder beside its
+/// own, synced, and renamed.
+#pragma once
+
+#include <string>
+
+#include "tubebin/dataset/dataset_config.hpp"
+#include "tubebin/dataset/manifest.hpp"
+#include "tubebin/dataset/scene_id.hpp"
+#include "tubebin/scene/scene_json.hpp"
+
+namespace tubebin {
+
+/// Everything that a scene's folder holds.
+struct SceneContent {
+  SceneRecord record;
+  Cloud cloud;
+  std::map<std::string, std::string> images;  ///< PNG files by name, with previews
+};
+
+class SceneStore {
+ public:
+  SceneStore(std::string folder, OutputOptions options) : folder_(std::move(folder)), options_(options) {}
+
+  /// "DIR/A10/007"
+  std::string path(const std::string& scene_name) const { return folder_ + "/" + scene_name; }
+  /// "cloud.pcd" or "cloud.ply"
+  std::string cloud_name() const;
+
+  /// Writes the scene, in the place of any that is there, and returns its files. Throws IoError; nothing
+  /// unfinished is under the scene's name then.
+  std::map<std::string, FileRecord> write(const std::string& scene_name, const SceneContent& content) const;
+
+  /// True where the scene's folder has the files of the record, each with its size (hashes are for verify).
+  bool has(const ManifestRecord& record) const;
+
+  /// Removes what killed runs left unfinished.
+  void remove_unfinished() const;
+
+ private:
+  std::string folder_;
+  OutputOptions options_;
+};
+
+}  // namespace tubebin

@@ -1,0 +1,90 @@
+#include "tubebin/dataset/generate_dataset.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "tubebin/dataset/generate_scene.hpp"
+
+namespace tubebin {
+namespace {
+
+/// In a worker process: one attempt at a scene, whose folder is complete when this returns a success.
+AttemptResult make_scene(const DatasetFolder& folder, const SceneId& id, int attempt) {
+  GeneratedScene scene = generate_scene(folder.config(), id, attempt);
+  if (scene.failure != DropFailure::none) return {false, to_string(scene.failure), scene.failure_detail};
+
+  ManifestRecord record{.id = id.name(),
+                        .tubes = id.tubes,
+                        .seed = scene.content.record.seed,
+                        .rejected = {},
+                        .seconds = std::move(scene.seconds),
+                        .physics = scene.physics,
+                        .files = {}};
+  const auto start = std::chrono::steady_clock::now();
+  record.files = folder.store().write(record.id, scene.content);
+  record.seconds["write"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return {true, format_manifest_record(record), ""};
+}
+
+std::string describe_failure(const SceneId& id, const JobOutcome& outcome) {
+  std::map<std::string, int> reasons;
+  for (const FailedAttempt& attempt : outcome.failed) ++reasons[attempt.reason];
+  std::vector<std::string> parts;
+  for (const auto& [reason, count] : reasons) parts.push_back(fmt::format("{} {}", count, reason));
+  const FailedAttempt& last = outcome.failed.back();
+  return fmt::format("{}: given up after {} attempts ({}); last: {}", id.name(), outcome.failed.size(),
+                     fmt::join(parts, ", "), last.detail.empty() ? last.reason : last.detail);
+}
+
+void record_scene(DatasetFolder& folder, const JobOutcome& outcome) {
+  ManifestRecord record = parse_manifest_record(outcome.text);
+  record.rejected = outcome.failed;
+  record.seconds["total"] = outcome.seconds;
+  folder.manifest().append(record);
+}
+
+}  // namespace
+
+std::size_t GenerationReport::rejects_total() const {
+  return static_cast<std::size_t>(
+      std::accumulate(rejects.begin(), rejects.end(), 0, [](int sum, const auto& entry) { return sum + entry.second; }));
+}
+
+GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<SceneId>& scenes, int jobs,
+                                  Progress::Style progress_style) {
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < scenes.size(); ++i)
+    if (!folder.is_complete(scenes[i].name())) missing.push_back(i);
+
+  GenerationReport report;
+  report.complete_before = scenes.size() - missing.size();
+  Progress progress(missing.size(), "scenes", progress_style);
+  const PoolEvents events{
+      .on_finished =
+          [&](const JobOutcome& outcome) {
+            if (outcome.succeeded) record_scene(folder, outcome);
+            else report.failed.push_back(describe_failure(scenes[outcome.job], outcome));
+            progress.count_done();
+          },
+      .on_failed_attempt =
+          [&](std::size_t, const FailedAttempt& attempt) {
+            ++report.rejects[attempt.reason];
+            progress.count_reject();
+          },
+      .on_tick = [&] { progress.show(); }};
+  const PoolOptions options{.workers = jobs,
+                            .attempts_max = folder.config().attempts_max,
+                            .attempt_time_limit = folder.config().attempt_time_limit};
+  const auto work = [&](std::size_t job, int attempt) { return make_scene(folder, scenes[job], attempt); };
+
+  const PoolReport pool = run_jobs(missing, options, work, events);
+  folder.store().remove_unfinished();
+  report.signal = pool.signal;
+  report.made = pool.succeeded;
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+}
+
+}  // namespace tubebin

@@ -1,0 +1,65 @@
+#include "tubebin/dataset/generate_scene.hpp"
+
+#include <chrono>
+
+#include "tubebin/cloud/label_colors.hpp"
+#include "tubebin/scan/scanner.hpp"
+
+namespace tubebin {
+namespace {
+
+/// Adds the time since the last call to the named stage.
+class StageClock {
+ public:
+  explicit StageClock(std::map<std::string, double>& seconds) : seconds_(seconds) {}
+  void end_stage(const char* name) {
+    const auto now = std::chrono::steady_clock::now();
+    seconds_[name] += std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+  }
+
+ private:
+  std::map<std::string, double>& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+std::uint64_t attempt_seed(const DatasetConfig& config, const SceneId& id, int attempt) {
+  std::uint64_t set = 0;
+  for (const char letter : id.set) set = derive_seed({set, static_cast<std::uint64_t>(letter)});
+  return derive_seed({config.seed, set, static_cast<std::uint64_t>(id.tubes),
+                      static_cast<std::uint64_t>(id.case_number), static_cast<std::uint64_t>(attempt)});
+}
+
+GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, int attempt) {
+  GeneratedScene result;
+  StageClock clock(result.seconds);
+  Random random(attempt_seed(config, id, attempt));
+
+  const std::vector<Tube> tubes = generate_tubes(id.tubes, config.tube, random);
+  clock.end_stage("build");
+
+  DropResult drop = drop_tubes(tubes, config.bin, config.physics, random.bits());
+  clock.end_stage("drop");
+  result.physics = drop.figures;
+  result.failure = drop.failure;
+  result.failure_detail = drop.detail;
+  if (drop.failure != DropFailure::none) return result;
+
+  const Scene scene{.bin = config.bin, .scanner = config.scanner, .tubes = std::move(drop.tubes)};
+  Scan scanned = scan(scene);
+  clock.end_stage("scan");
+
+  result.content.record = {.id = id.name(),
+                           .seed = attempt_seed(config, id, attempt),
+                           .scene = scene,
+                           .window = scanned.window,
+                           .colors = label_colors(scene.tubes.size()),
+                           .tube_pixels = std::move(scanned.tube_pixels),
+                           .contacts = std::move(drop.contacts)};
+  result.content.cloud = std::move(scanned.cloud);
+  return result;
+}
+
+}  // namespace tubebin

@@ -1,0 +1,73 @@
+#include "tubebin/dataset/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace tubebin {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr Seconds kBarInterval{0.1};
+constexpr Seconds kLineInterval{10.0};
+constexpr std::size_t kBarWidth = 30;
+constexpr const char* kEraseLine = "\r\033[K";
+
+/// "1:02:03" or "2:03"
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<long long>(seconds + 0.5);
+  if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+  return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+}  // namespace
+
+Progress::Progress(std::size_t total, std::string noun, Style style)
+    : total_(total),
+      noun_(std::move(noun)),
+      is_shown_(style == Style::automatic && total > 0),
+      is_terminal_(isatty(STDERR_FILENO) == 1) {
+  if (is_shown_ && is_terminal_) draw_bar();
+}
+
+Progress::~Progress() {
+  if (!is_shown_) return;
+  if (is_terminal_) draw_bar();
+  fmt::print(stderr, "{}\n", is_terminal_ ? "" : status());
+}
+
+std::string Progress::status() const {
+  const double elapsed = Seconds(std::chrono::steady_clock::now() - start_).count();
+  const double rate = elapsed > 0.0 ? static_cast<double>(done_) / elapsed : 0.0;
+  const std::string time = done_ == total_ ? fmt::format("took {}", clock_text(elapsed))
+                           : done_ == 0    ? std::string("ETA --:--")
+                                           : fmt::format("ETA {}", clock_text(static_cast<double>(total_ - done_) / rate));
+  return fmt::format("{}/{} {}, {:.1f} {}/s, {} rejects, {}", done_, total_, noun_, rate, noun_, rejects_, time);
+}
+
+void Progress::draw_bar() {
+  const std::size_t filled = total_ > 0 ? kBarWidth * done_ / total_ : 0;
+  fmt::print(stderr, "{}[{}{}] {}", kEraseLine, std::string(filled, '#'), std::string(kBarWidth - filled, ' '),
+             status());
+  std::fflush(stderr);
+}
+
+void Progress::show() {
+  if (!is_shown_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_shown_ < (is_terminal_ ? kBarInterval : kLineInterval)) return;
+  last_shown_ = now;
+  if (is_terminal_)
+    draw_bar();
+  else
+    fmt::print(stderr, "{}\n", status());
+}
+
+void Progress::message(const std::string& text) {
+  fmt::print(stderr, "{}{}\n", is_shown_ && is_terminal_ ? kEraseLine : "", text);
+  if (is_shown_ && is_terminal_) draw_bar();
+}
+
+}  // namespace tubebin
