@@ -32,3 +32,13 @@ function(tubebin_apps)
     target_compile_definitions(${name} PRIVATE TUBEBIN_VERSION="${PROJECT_VERSION}")
   endforeach()
 endfunction()
+
+# tubebin_embed(MODULE FILE NAME): the file's text as `extern const char* const NAME` in the module.
+function(tubebin_embed module file name)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${file})
+  file(READ ${CMAKE_SOURCE_DIR}/${file} text)
+  set(source ${CMAKE_BINARY_DIR}/embedded/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} @ONLY CONTENT
+       "extern const char* const @name@;\nconst char* const @name@ = R\"embedded(@text@)embedded\";\n")
+  target_sources(tubebin_${module} PRIVATE ${source})
+endfunction()

@@ -82,6 +82,11 @@ DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& con
   store_.remove_unfinished();
 }
 
+DatasetFolder::~DatasetFolder() try {
+  store_.remove_unfinished();
+} catch (const IoError&) {  // the next run tries again
+}
+
 bool DatasetFolder::is_complete(const std::string& scene_name) const {
   const ManifestRecord* record = manifest_.find(scene_name);
   return record != nullptr && store_.has(*record);

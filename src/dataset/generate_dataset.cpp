@@ -80,7 +80,6 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
   const auto work = [&](std::size_t job, int attempt) { return make_scene(folder, scenes[job], attempt); };
 
   const PoolReport pool = run_jobs(missing, options, work, events);
-  folder.store().remove_unfinished();
   report.signal = pool.signal;
   report.made = pool.succeeded;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

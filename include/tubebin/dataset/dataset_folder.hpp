@@ -22,6 +22,11 @@ class DatasetFolder {
   /// where it can't be written.
   DatasetFolder(const std::string& folder, const DatasetConfig& config);
 
+  /// Removes what workers were stopped in the middle of.
+  ~DatasetFolder();
+  DatasetFolder(const DatasetFolder&) = delete;
+  DatasetFolder& operator=(const DatasetFolder&) = delete;
+
   const std::string& path() const { return folder_; }
   /// All scenes that were ever asked for.
   const DatasetConfig& config() const { return config_; }

@@ -1,0 +1,15 @@
+/// Time per test case by number of tubes, in the form of the paper's Table 1 and beside its figures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tubebin/dataset/manifest.hpp"
+#include "tubebin/dataset/scene_id.hpp"
+
+namespace tubebin {
+
+/// Means over those of the scenes that the manifest records; empty where it records none.
+std::string format_timing_table(const Manifest& manifest, const std::vector<SceneId>& scenes);
+
+}  // namespace tubebin
