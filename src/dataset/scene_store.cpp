@@ -21,7 +21,7 @@ constexpr const char* kUnfinishedSuffix = ".partial";
 
 /// "DIR/A10/.007.partial": a hidden sibling, so that the rename stays within one folder.
 fs::path unfinished_path(const fs::path& scene) {
-  return scene.parent_path() / ("." + scene.filename().string() + kUnfinishedSuffix);
+  return scene.parent_path() / fmt::format(".{}{}", scene.filename().string(), kUnfinishedSuffix);
 }
 
 bool is_unfinished(const fs::path& path) {

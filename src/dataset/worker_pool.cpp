@@ -1,10 +1,10 @@
 #include "tubebin/dataset/worker_pool.hpp"
 
-#include <fmt/format.h>
 #include <poll.h>
 #include <sched.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 
+#include "tubebin/core/error.hpp"
 #include "worker_process.hpp"
 
 namespace tubebin {

@@ -9,6 +9,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <stdexcept>
+
+#include "tubebin/core/error.hpp"
 
 namespace tubebin {
 namespace {
