@@ -6,7 +6,7 @@ void describe(Fields& fields, PhysicsOptions& o) {
   fields.number("gravity", o.gravity, {0.01, 100.0}, "m/s^2", "downward acceleration");
   fields.number("time_step", o.time_step, {1e-5, 0.05}, "s", "of the simulation; smaller is slower and more exact");
   fields.integer("solver_iterations", o.solver_iterations, {1, 10000}, "",
-                 "of ODE's quickstep; more make stiffer piles");
+                 "of ODE's quickstep; doubled for each check that nothing moves, whose creep is the solver's residual");
   fields.number("solver_over_relaxation", o.solver_over_relaxation, {0.1, 1.9}, "", "quickstep's SOR factor");
   fields.number("contact_erp", o.contact_erp, {0.0, 1.0}, "",
                 "share of an interpenetration that one step corrects (ODE's error reduction parameter)");
@@ -18,6 +18,8 @@ void describe(Fields& fields, PhysicsOptions& o) {
                 "highest speed at which interpenetrating bodies are pushed apart");
   fields.number("friction_tube", o.friction_tube, {0.0, 1000.0}, "", "Coulomb friction, tube on tube");
   fields.number("friction_bin", o.friction_bin, {0.0, 1000.0}, "", "Coulomb friction, tube on bin");
+  fields.number("rolling_resistance", o.rolling_resistance, {0.0, 1.0}, "m",
+                "torque of a contact against rolling, divided by its normal force");
   fields.number("damping_linear", o.damping_linear, {0.0, 1.0}, "", "share of the linear velocity lost in a step");
   fields.number("damping_angular", o.damping_angular, {0.0, 1.0}, "", "share of the angular velocity lost in a step");
   fields.number("speed_max", o.speed_max, {0.01, 1000.0}, "m/s",

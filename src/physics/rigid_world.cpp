@@ -68,7 +68,8 @@ struct RigidWorld::Impl {
   void add_contacts(dBodyID first, dBodyID second, double friction) {
     for (const Touch& touch : touches) {
       dContact contact{};
-      contact.surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
+      contact.surface.mode = dContactApprox1 | dContactRolling | dContactSoftERP | dContactSoftCFM;
+      contact.surface.rho = contact.surface.rho2 = options.rolling_resistance;
       contact.surface.mu = friction;
       contact.surface.soft_erp = options.contact_erp;
       contact.surface.soft_cfm = options.contact_cfm;
@@ -124,6 +125,10 @@ RigidWorld::RigidWorld(const std::vector<PlacedTube>& tubes, const Bin& bin, con
 RigidWorld::~RigidWorld() {
   dJointGroupDestroy(impl_->contacts);
   dWorldDestroy(impl_->world);
+}
+
+void RigidWorld::set_solver_iterations(int iterations) {
+  dWorldSetQuickStepNumIterations(impl_->world, iterations);
 }
 
 void RigidWorld::step() {

@@ -17,6 +17,8 @@ class RigidWorld {
   RigidWorld(const RigidWorld&) = delete;
   RigidWorld& operator=(const RigidWorld&) = delete;
 
+  /// In place of options.solver_iterations.
+  void set_solver_iterations(int iterations);
   /// One step of options.time_step.
   void step();
 

@@ -26,6 +26,12 @@ std::optional<Quat> fitting_rotation(const Tube& tube, const Bin& bin, double cl
   return std::nullopt;
 }
 
+/// How far from the bin's middle a tube may start, as a share of the room between the walls: one that stands taller
+/// than the walls falls over, and from beside a wall it would fall out.
+double steadiness(const Box& bounds, const Bin& bin) {
+  return std::min(1.0, bin.height / bounds.sizes().z());
+}
+
 bool overlaps(const CollisionTube& shape, const std::vector<CollisionTube>& placed, double clearance) {
   std::vector<Touch> touches;
   for (const CollisionTube& other : placed) {
@@ -63,7 +69,8 @@ std::optional<std::vector<PlacedTube>> spawn(const std::vector<Tube>& tubes, con
     const std::optional<Quat> rotation = fitting_rotation(tube, bin, clearance, random);
     if (!rotation) return std::nullopt;
     const Box bounds = bounds_of(tube, *rotation);
-    const Vec3 room = 0.5 * (Vec3(bin.length, bin.width, 0.0) - bounds.sizes()) - Vec3::Constant(clearance);
+    const Vec3 room = steadiness(bounds, bin) *
+                      (0.5 * (Vec3(bin.length, bin.width, 0.0) - bounds.sizes()) - Vec3::Constant(clearance));
     PlacedTube lowest{tube, Pose::Identity()};
     CollisionTube lowest_shape;
     for (int i = 0; i < options.spawn_tries; ++i) {
