@@ -71,11 +71,9 @@ Eigen::AlignedBox3d SolidSphere::bounds() const {
   return {center_ - reach, center_ + reach};
 }
 
-Interval intersect(const Eigen::AlignedBox3d& box, const Vec3& direction) {
-  Interval inside = kWholeLine;
-  for (int k = 0; k < 3; ++k)
-    inside = common_part(inside, between_planes(box.min()[k], box.max()[k], direction[k]));
-  return inside;
+Vec3 inverse_direction(const Vec3& direction) {
+  constexpr double kSteepest = 1e300;
+  return direction.unaryExpr([](double slope) { return slope == 0.0 ? kSteepest : 1.0 / slope; });
 }
 
 }  // namespace tubebin

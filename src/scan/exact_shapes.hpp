@@ -55,7 +55,14 @@ class SolidSphere {
   double radius_;
 };
 
-/// An axis-aligned solid box.
-Interval intersect(const Eigen::AlignedBox3d& box, const Vec3& direction);
+/// 1 / direction, finite: a ray within a face's plane touches the box.
+Vec3 inverse_direction(const Vec3& direction);
+
+/// An axis-aligned solid box (Kay and Kajiya 1986, "Ray tracing complex scenes"). Many boxes share one ray's inverse.
+inline Interval intersect(const Eigen::AlignedBox3d& box, const Vec3& inverse_direction) {
+  const Vec3 a = box.min().cwiseProduct(inverse_direction);
+  const Vec3 b = box.max().cwiseProduct(inverse_direction);
+  return {a.cwiseMin(b).maxCoeff(), a.cwiseMax(b).minCoeff()};
+}
 
 }  // namespace tubebin

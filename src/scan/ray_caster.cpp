@@ -127,7 +127,8 @@ RayCaster::RayCaster(SceneSolids solids, double depth_min, double depth_max)
 
 Hit RayCaster::first_hit(const Vec3& direction) const {
   RayQuery query(direction, depth_min_);
-  for (const Box& box : solids_.bin) query.offer(intersect(box, direction), 0);
+  const Vec3 inverse = inverse_direction(direction);
+  for (const Box& box : solids_.bin) query.offer(intersect(box, inverse), 0);
   RTCRayHit ray = make_ray(direction, depth_min_, std::min(depth_max_, query.first.depth));
   embree::intersect(scene_.get(), query, ray);
   const Hit hit = query.begins_inside ? first_hit_from_inside(direction) : query.first;
@@ -139,7 +140,8 @@ Hit RayCaster::first_hit_from_inside(const Vec3& direction) const {
   const auto collect = [&](const Interval& inside, Label label) {
     if (!inside.empty()) parts_of_body[label].push_back(inside);
   };
-  for (const Box& box : solids_.bin) collect(intersect(box, direction), 0);
+  const Vec3 inverse = inverse_direction(direction);
+  for (const Box& box : solids_.bin) collect(intersect(box, inverse), 0);
   for (const auto& [solid, label] : solids_.cylinders) collect(solid.intersect(direction), label);
   for (const auto& [solid, label] : solids_.spheres) collect(solid.intersect(direction), label);
   Hit first;
