@@ -65,6 +65,15 @@ struct TracedHit {
   Vec3 point = Vec3::Zero();
 };
 
+/// The largest distance, in metres, of a finite point from the surface that its label names.
+inline double worst_surface_distance(const Scene& scene, const Cloud& cloud) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (is_finite(cloud.points[i]))
+      worst = std::max(worst, std::abs(distance_to(cloud.points[i].cast<double>(), scene, cloud.labels[i])));
+  return worst;
+}
+
 /// Walks from depth range_min to range_max + 1e-9, never farther than to the nearest surface. `direction`, in world
 /// axes, has depth one. A ray that passes a surface within 1e-9 m counts as a hit.
 inline TracedHit sphere_trace(const Scene& scene, const Vec3& direction) {
