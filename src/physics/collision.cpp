@@ -10,12 +10,15 @@ namespace {
 /// Parallel within this sine, two cylinders touch along a line and get a touch at each end of it.
 constexpr double kParallelSine = 0.15;
 
-bool is_flat_end(const Piece& piece, double parameter) {
-  return (parameter <= 0.0 && piece.flat_a) || (parameter >= 1.0 && piece.flat_b);
+/// Whether the way out through a flat end is as short as `depth`, the way out through the side (metres).
+bool is_flat_end(const Piece& piece, double parameter, double depth = 0.0) {
+  const double along = parameter * piece.length;
+  const double reach = std::max(depth, 0.0);
+  return (piece.flat_a && along <= reach) || (piece.flat_b && along >= piece.length - reach);
 }
 
 Vec3 outward_end_direction(const Piece& piece, double parameter) {
-  return parameter <= 0.0 ? Vec3(-piece.direction) : piece.direction;
+  return parameter < 0.5 ? Vec3(-piece.direction) : piece.direction;
 }
 
 Vec3 project_on_box(const Box& box, const Vec3& point) { return point.cwiseMax(box.min()).cwiseMin(box.max()); }
@@ -61,8 +64,10 @@ std::optional<Touch> touch_flat_with_flat(const Piece& first, double end, const 
 /// The touch at the closest points of two pieces' axes.
 std::optional<Touch> touch_pieces(const Piece& first, const Piece& second, const SegmentPair& closest,
                                   double depth_min) {
-  const bool first_flat = is_flat_end(first, closest.s);
-  const bool second_flat = is_flat_end(second, closest.t);
+  const double depth_of_sides =
+      first.radius + second.radius - (first.axis.at(closest.s) - second.axis.at(closest.t)).norm();
+  const bool first_flat = is_flat_end(first, closest.s, depth_of_sides);
+  const bool second_flat = is_flat_end(second, closest.t, depth_of_sides);
   if (first_flat && second_flat) return touch_flat_with_flat(first, closest.s, second, depth_min);
   if (first_flat) return touch_flat_with_round(first, closest.s, second, depth_min);
   if (second_flat) {
@@ -84,8 +89,9 @@ void add_line_touches(const Piece& first, const Piece& second, double depth_min,
   for (const double along : {from, to}) {
     const Vec3 on_first = first.axis.a + along * first.direction;
     const double t = std::clamp((on_first - second.axis.a).dot(second.direction) / second.length, 0.0, 1.0);
-    if (const auto touch = touch_balls(on_first, first.radius, second.axis.at(t), second.radius, depth_min))
-      out.push_back(*touch);
+    const auto touch = touch_balls(on_first, first.radius, second.axis.at(t), second.radius, depth_min);
+    // Deeper than they run side by side, they meet end to end instead.
+    if (touch && touch->depth < to - from) out.push_back(*touch);
   }
 }
 

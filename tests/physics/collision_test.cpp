@@ -1,0 +1,182 @@
+#include "physics/collision.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tubebin/tube/tube_generator.hpp"
+
+namespace tubebin {
+namespace {
+
+/// Signed distance to a solid cylinder with flat ends (exact outside and inside).
+double distance_to_cylinder(const Vec3& a, const Vec3& b, double radius, const Vec3& p) {
+  const Vec3 axis = (b - a).normalized();
+  const double half = 0.5 * (b - a).norm();
+  const Vec3 offset = p - 0.5 * (a + b);
+  const double along = std::abs(offset.dot(axis)) - half;
+  const double across = (offset - offset.dot(axis) * axis).norm() - radius;
+  return std::min(std::max(along, across), 0.0) + std::hypot(std::max(along, 0.0), std::max(across, 0.0));
+}
+
+double distance_to_tube(const PlacedTube& tube, const Vec3& p) {
+  double nearest = 1e9;
+  const std::vector<int> degrees = tube.tube.node_degrees();
+  for (const Cylinder& c : tube.tube.cylinders)
+    nearest = std::min(nearest, distance_to_cylinder(tube.node_in_world(c.node_a), tube.node_in_world(c.node_b),
+                                                     tube.tube.radius, p));
+  for (int i = 0; i < static_cast<int>(degrees.size()); ++i)
+    if (degrees[static_cast<std::size_t>(i)] >= 2)
+      nearest = std::min(nearest, (p - tube.node_in_world(i)).norm() - tube.tube.radius);
+  return nearest;
+}
+
+double distance_to_bin(const Bin& bin, const Vec3& p) {
+  double nearest = 1e9;
+  for (const Box& box : bin_boxes(bin)) nearest = std::min(nearest, box.exteriorDistance(p));
+  return nearest;
+}
+
+/// Points all over a tube's cylinders and caps, `spacing` apart.
+std::vector<Vec3> surface_points(const PlacedTube& tube, double spacing) {
+  std::vector<Vec3> points;
+  const double r = tube.tube.radius;
+  for (const Cylinder& c : tube.tube.cylinders) {
+    const Vec3 a = tube.node_in_world(c.node_a);
+    const Vec3 b = tube.node_in_world(c.node_b);
+    const Vec3 axis = (b - a).normalized();
+    const Vec3 u = axis.unitOrthogonal();
+    const Vec3 v = axis.cross(u);
+    const int around = static_cast<int>(std::ceil(2 * std::numbers::pi * r / spacing));
+    const int along = static_cast<int>(std::ceil((b - a).norm() / spacing));
+    const int rings = static_cast<int>(std::ceil(r / spacing));
+    for (int i = 0; i < around; ++i) {
+      const double angle = 2 * std::numbers::pi * i / around;
+      const Vec3 radial = std::cos(angle) * u + std::sin(angle) * v;
+      for (int k = 0; k <= along; ++k) points.push_back(a + (b - a) * k / along + r * radial);
+      for (int k = 0; k < rings; ++k)
+        for (const Vec3& end : {a, b}) points.push_back(end + r * k / rings * radial);
+    }
+  }
+  return points;
+}
+
+PlacedTube straight(const Vec3& a, const Vec3& b, double radius = 0.0125) {
+  return {Tube{.radius = radius, .mass = 0.1, .nodes = {a, b}, .cylinders = {{0, 1, 0}}}, Pose::Identity()};
+}
+
+std::vector<Touch> touches_of(const PlacedTube& a, const PlacedTube& b, double depth_min = 0.0) {
+  std::vector<Touch> touches;
+  collide(collision_tube(a), collision_tube(b), depth_min, touches);
+  return touches;
+}
+
+TEST(Collision, CrossingCylindersTouchOnce) {
+  const auto touches = touches_of(straight({-0.1, 0, 0}, {0.1, 0, 0}), straight({0, -0.1, 0.0249}, {0, 0.1, 0.0249}));
+  ASSERT_EQ(touches.size(), 1u);
+  EXPECT_NEAR(touches[0].depth, 0.0001, 1e-12);
+  EXPECT_NEAR((touches[0].normal - Vec3::UnitZ()).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((touches[0].position - Vec3(0, 0, 0.01245)).norm(), 0.0, 1e-12);
+}
+
+TEST(Collision, ParallelCylindersTouchAtBothEndsOfTheirOverlap) {
+  const auto touches = touches_of(straight({0, 0, 0}, {0.2, 0, 0}), straight({0.1, 0, 0.0249}, {0.3, 0, 0.0249}));
+  ASSERT_GE(touches.size(), 2u);
+  double low = 1.0;
+  double high = 0.0;
+  for (const Touch& touch : touches) {
+    low = std::min(low, touch.position.x());
+    high = std::max(high, touch.position.x());
+  }
+  EXPECT_NEAR(low, 0.1, 1e-9);
+  EXPECT_NEAR(high, 0.2, 1e-9);
+}
+
+TEST(Collision, AFlatEndEndsWhereTheScannerSeesIt) {
+  // A capsule would reach a radius beyond the end.
+  EXPECT_TRUE(touches_of(straight({0, 0, 0}, {0.2, 0, 0}), straight({0.2126, -0.1, 0}, {0.2126, 0.1, 0}), 0.0).empty());
+  const auto touches = touches_of(straight({0, 0, 0}, {0.2, 0, 0}), straight({0.2124, -0.1, 0}, {0.2124, 0.1, 0}));
+  ASSERT_EQ(touches.size(), 1u);
+  EXPECT_NEAR(touches[0].depth, 0.0001, 1e-9);
+  EXPECT_NEAR((touches[0].normal - Vec3::UnitX()).norm(), 0.0, 1e-6);
+}
+
+TEST(Collision, FacingEndsTouchFaceToFace) {
+  const auto touches = touches_of(straight({0, 0, 0}, {0.1, 0, 0}), straight({0.0999, 0, 0.002}, {0.2, 0, 0.002}));
+  ASSERT_EQ(touches.size(), 1u);
+  EXPECT_NEAR(touches[0].depth, 0.0001, 1e-8);
+  EXPECT_NEAR(std::abs(touches[0].normal.x()), 1.0, 1e-6);
+}
+
+TEST(Collision, GapsOfBentTubesMatchTheirSampledSurfaces) {
+  // Oracle: dense points of one surface against the exact distance function of the other, both ways.
+  Random random(3);
+  TubeOptions options;
+  options.length = 0.12;
+  options.cylinder_count_min = 1;
+  options.cylinder_count_max = 4;
+  constexpr double kSpacing = 0.0008;
+  int compared = 0;
+  for (int trial = 0; trial < 4000 && compared < 40; ++trial) {
+    const std::vector<Tube> tubes = generate_tubes(2, options, random);
+    const PlacedTube a{tubes[0], Pose::Identity()};
+    const Vec3 offset(random.uniform(-0.08, 0.08), random.uniform(-0.08, 0.08), random.uniform(-0.08, 0.08));
+    const PlacedTube b{tubes[1], make_pose(random.rotation(), offset)};
+    const auto touches = touches_of(a, b, -0.02);
+    if (touches.empty()) continue;
+    double depth = -1.0;
+    for (const Touch& touch : touches) depth = std::max(depth, touch.depth);
+    if (depth > -0.0005) continue;  // separated pairs have one distance; interpenetrating ones many depths
+    ++compared;
+    double gap = 1.0;
+    for (const Vec3& p : surface_points(a, kSpacing)) gap = std::min(gap, distance_to_tube(b, p));
+    for (const Vec3& p : surface_points(b, kSpacing)) gap = std::min(gap, distance_to_tube(a, p));
+    // Joint spheres aren't sampled, points lie up to half a spacing beside the nearest, and two rounded rims hide
+    // up to twice 0.41 mm.
+    EXPECT_LT(-depth, gap + 0.00083) << "trial " << trial;
+    EXPECT_GT(-depth, gap - 0.0007) << "trial " << trial;
+  }
+  EXPECT_EQ(compared, 40);
+}
+
+TEST(Collision, GapsToTheBinMatchTheSampledSurface) {
+  Random random(4);
+  TubeOptions options;
+  options.length = 0.15;
+  options.cylinder_count_min = 1;
+  options.cylinder_count_max = 3;
+  const Bin bin;
+  int compared = 0;
+  for (int trial = 0; trial < 4000 && compared < 40; ++trial) {
+    const Vec3 place(random.uniform(-0.3, 0.3), random.uniform(-0.2, 0.2), random.uniform(0.0, 0.3));
+    const PlacedTube tube{generate_tubes(1, options, random).front(), make_pose(random.rotation(), place)};
+    std::vector<Touch> touches;
+    collide(bin_boxes(bin), collision_tube(tube), -0.01, touches);
+    if (touches.empty()) continue;
+    double depth = -1.0;
+    for (const Touch& touch : touches) depth = std::max(depth, touch.depth);
+    if (depth > -0.0005) continue;
+    ++compared;
+    double gap = 1.0;
+    for (const Vec3& p : surface_points(tube, 0.0008)) gap = std::min(gap, distance_to_bin(bin, p));
+    EXPECT_LT(-depth, gap + 0.00083) << "trial " << trial;
+    EXPECT_GT(-depth, gap - 0.0007) << "trial " << trial;
+  }
+  EXPECT_EQ(compared, 40);
+}
+
+TEST(Collision, ATubeOnTheWallsRimIsHeldByItsEdge) {
+  const Bin bin;
+  const double top = bin.height + 0.0125 - 0.0001;
+  const PlacedTube tube = straight({bin.length / 2 - 0.2, 0, top}, {bin.length / 2 + 0.2, 0, top});
+  std::vector<Touch> touches;
+  collide(collision_boxes(bin), collision_tube(tube), 0.0, touches);
+  ASSERT_FALSE(touches.empty());
+  for (const Touch& touch : touches) {
+    EXPECT_NEAR(touch.depth, 0.0001, 1e-9);
+    EXPECT_NEAR(touch.normal.z(), 1.0, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace tubebin
