@@ -9,8 +9,8 @@
 #include <limits>
 #include <utility>
 
-#include "tubebin/core/text_scan.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/core/text_scan.hpp"
 
 namespace tubebin {
 namespace {
@@ -29,16 +29,26 @@ Scalar load(const char* bytes, bool swapped) {
 template <typename Function>
 auto with_type(ScalarType type, Function&& f) {
   switch (type) {
-    case ScalarType::int8: return f(std::int8_t{});
-    case ScalarType::uint8: return f(std::uint8_t{});
-    case ScalarType::int16: return f(std::int16_t{});
-    case ScalarType::uint16: return f(std::uint16_t{});
-    case ScalarType::int32: return f(std::int32_t{});
-    case ScalarType::uint32: return f(std::uint32_t{});
-    case ScalarType::int64: return f(std::int64_t{});
-    case ScalarType::uint64: return f(std::uint64_t{});
-    case ScalarType::float32: return f(float{});
-    case ScalarType::float64: break;
+    case ScalarType::int8:
+      return f(std::int8_t{});
+    case ScalarType::uint8:
+      return f(std::uint8_t{});
+    case ScalarType::int16:
+      return f(std::int16_t{});
+    case ScalarType::uint16:
+      return f(std::uint16_t{});
+    case ScalarType::int32:
+      return f(std::int32_t{});
+    case ScalarType::uint32:
+      return f(std::uint32_t{});
+    case ScalarType::int64:
+      return f(std::int64_t{});
+    case ScalarType::uint64:
+      return f(std::uint64_t{});
+    case ScalarType::float32:
+      return f(float{});
+    case ScalarType::float64:
+      break;
   }
   return f(double{});
 }
@@ -57,8 +67,8 @@ template <typename Scalar>
 std::uint32_t to_uint32(Scalar value, const char* what, std::size_t point, const std::string& name) {
   const auto number = static_cast<double>(value);
   if (!(number >= 0.0 && number <= kMaxUint32) || number != std::floor(number))
-    throw_io_error("{}: point {}: {} {} is not valid; valid: a whole number from 0 to {}", name, point, what, number,
-                   std::numeric_limits<std::uint32_t>::max());
+    throw_io_error("{}: point {}: {} {} is not valid; valid: a whole number from 0 to {}", name, point, what,
+                   number, std::numeric_limits<std::uint32_t>::max());
   return static_cast<std::uint32_t>(number);
 }
 
@@ -75,7 +85,8 @@ double full_channel(const Column& column) {
   return floating && !column.whole ? 1.0 : 255.0;
 }
 
-/// A colour whose float was written as text: old writers give the float itself, newer ones its bits as a number.
+/// A colour whose float was written as text: old writers give the float itself, newer ones its bits as a
+/// number.
 double packed_color_bits(std::string_view word, double number) {
   const bool bits = word.find_first_not_of("0123456789") == std::string_view::npos;
   if (bits) return number;
@@ -99,9 +110,11 @@ void split_row(std::string_view line, std::vector<std::string_view>& words, std:
                const std::string& name) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     words[i] = take_word(line);
-    if (words[i].empty()) throw_io_error("{}:{}: expected {} values, found {}", name, line_number, words.size(), i);
+    if (words[i].empty())
+      throw_io_error("{}:{}: expected {} values, found {}", name, line_number, words.size(), i);
   }
-  if (!take_word(line).empty()) throw_io_error("{}:{}: expected {} values, found more", name, line_number, words.size());
+  if (!take_word(line).empty())
+    throw_io_error("{}:{}: expected {} values, found more", name, line_number, words.size());
 }
 
 }  // namespace
@@ -111,13 +124,14 @@ std::size_t size_of(ScalarType type) {
 }
 
 double scalar_at(const char* bytes, ScalarType type, bool swapped) {
-  return with_type(type, [&](auto zero) { return static_cast<double>(load<decltype(zero)>(bytes, swapped)); });
+  return with_type(type,
+                   [&](auto zero) { return static_cast<double>(load<decltype(zero)>(bytes, swapped)); });
 }
 
 std::optional<Role> role_of(std::string_view field_name) {
   constexpr std::pair<std::string_view, Role> kRoles[] = {
-      {"x", kX},      {"y", kY},         {"z", kZ},       {"rgb", kPackedColor}, {"rgba", kPackedColor},
-      {"red", kRed},  {"green", kGreen}, {"blue", kBlue}, {"label", kLabel}};
+      {"x", kX},     {"y", kY},         {"z", kZ},       {"rgb", kPackedColor}, {"rgba", kPackedColor},
+      {"red", kRed}, {"green", kGreen}, {"blue", kBlue}, {"label", kLabel}};
   for (const auto& [name, role] : kRoles)
     if (name == field_name) return role;
   return std::nullopt;
@@ -125,11 +139,12 @@ std::optional<Role> role_of(std::string_view field_name) {
 
 void require_coordinates(const std::array<bool, kRoleCount>& present, const std::string& name) {
   if (present[kX] && present[kY] && present[kZ]) return;
-  throw_io_error("{}: a cloud needs the fields x, y and z; missing here:{}{}{}", name, present[kX] ? "" : " x",
-                 present[kY] ? "" : " y", present[kZ] ? "" : " z");
+  throw_io_error("{}: a cloud needs the fields x, y and z; missing here:{}{}{}", name,
+                 present[kX] ? "" : " x", present[kY] ? "" : " y", present[kZ] ? "" : " z");
 }
 
 void CloudColumns::decode(std::size_t count, double scale, const std::string& name, Cloud& cloud) const {
+  if (count == 0) return;
   cloud.points.resize(count);
   for (const Role role : {kX, kY, kZ})
     for_each_value(*columns_[role], count, [&](std::size_t i, auto value) {
@@ -175,7 +190,8 @@ std::vector<double> AsciiRows::parse(LineScanner& lines, std::size_t rows, const
   std::vector<std::string_view> words(values_per_row);
   for (std::size_t row = 0; row < rows; ++row) {
     std::optional<std::string_view> line = lines.next_filled();
-    if (!line) throw_io_error("{}: truncated: {} points are announced, but only {} are there", name, rows, row);
+    if (!line)
+      throw_io_error("{}: truncated: {} points are announced, but only {} are there", name, rows, row);
     split_row(*line, words, lines.number(), name);
     for (const Wanted& value : wanted) {
       const std::string_view word = words[value.position];
@@ -190,9 +206,11 @@ std::vector<double> AsciiRows::parse(LineScanner& lines, std::size_t rows, const
 
 CloudColumns AsciiRows::columns(const std::vector<double>& values) const {
   CloudColumns columns;
+  if (values.empty()) return columns;
   for (std::size_t k = 0; k < wanted.size(); ++k)
-    columns.set(wanted[k].role, {reinterpret_cast<const char*>(values.data() + k), wanted.size() * sizeof(double),
-                                 ScalarType::float64, false, wanted[k].whole});
+    columns.set(wanted[k].role,
+                {reinterpret_cast<const char*>(values.data() + k), wanted.size() * sizeof(double),
+                 ScalarType::float64, false, wanted[k].whole});
   return columns;
 }
 

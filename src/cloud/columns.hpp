@@ -1,5 +1,5 @@
-/// Values a point at fixed distances in memory: the common ground of every binary layout, of PCD's field-by-field
-/// compressed layout, and of parsed text.
+/// Values a point at fixed distances in memory: the common ground of every binary layout, of PCD's
+/// field-by-field compressed layout, and of parsed text.
 #pragma once
 
 #include <array>
@@ -9,13 +9,22 @@
 #include <string_view>
 #include <vector>
 
-#include "tubebin/core/text_scan.hpp"
 #include "tubebin/cloud/cloud.hpp"
+#include "tubebin/core/text_scan.hpp"
 
 namespace tubebin {
 
 enum class ScalarType : std::uint8_t {
-  int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64
+  int8,
+  uint8,
+  int16,
+  uint16,
+  int32,
+  uint32,
+  int64,
+  uint64,
+  float32,
+  float64
 };
 std::size_t size_of(ScalarType type);
 
@@ -39,7 +48,8 @@ class CloudColumns {
   bool has(Role role) const { return columns_[role].has_value(); }
   void set(Role role, const Column& column) { columns_[role] = column; }
 
-  /// Fills points, colours and labels of `count` points. Throws IoError where a colour or label is no such thing.
+  /// Fills points, colours and labels of `count` points. Throws IoError where a colour or label is no such
+  /// thing.
   void decode(std::size_t count, double scale, const std::string& name, Cloud& cloud) const;
 
  private:

@@ -20,8 +20,8 @@ double linear_from_srgb(Color channel) {
   return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
 }
 
-/// OKLab, where distances are close to how different people see colours (B. Ottosson, "A perceptual color space
-/// for image processing", 2020).
+/// OKLab, where distances are close to how different people see colours (B. Ottosson, "A perceptual color
+/// space for image processing", 2020).
 Vec3 oklab(Color color) {
   const Vec3 rgb(linear_from_srgb(color >> 16 & 0xFF), linear_from_srgb(color >> 8 & 0xFF),
                  linear_from_srgb(color & 0xFF));
@@ -55,14 +55,14 @@ std::vector<Candidate> candidates() {
 
 }  // namespace
 
-/// Farthest-first traversal (Gonzalez 1985): each colour is the candidate farthest from all before it, so that the
-/// first colours are the most different ones and label k has the same colour in every scene.
+/// Farthest-first traversal (Gonzalez 1985): each colour is the candidate farthest from all before it, so
+/// that the first colours are the most different ones and label k has the same colour in every scene.
 std::vector<Color> label_colors(std::size_t tube_count) {
   static const std::vector<Candidate> all = candidates();
   std::vector<Candidate> free = all;
   if (tube_count >= free.size())
-    throw_config_error("{} tubes are more than there are colours to tell them apart; valid: below {}", tube_count,
-                       free.size());
+    throw_config_error("{} tubes are more than there are colours to tell them apart; valid: below {}",
+                       tube_count, free.size());
   std::vector<Color> colors = {kBinColor};
   colors.reserve(tube_count + 1);
   Vec3 chosen = oklab(kBinColor);

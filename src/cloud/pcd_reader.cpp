@@ -8,8 +8,8 @@
 
 #include "cloud/cloud_formats.hpp"
 #include "cloud/columns.hpp"
-#include "tubebin/core/text_scan.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/core/text_scan.hpp"
 
 namespace tubebin {
 namespace {
@@ -66,12 +66,18 @@ class HeaderReader {
     if (keyword.empty() || keyword.starts_with('#')) return;
     if (keyword == "VERSION") return;
     if (keyword == "FIELDS" || keyword == "COLUMNS") return read_fields(line);
-    if (keyword == "SIZE") return read_each(line, "SIZE", [&](Field& f, auto word) { f.size = read_size(word); });
-    if (keyword == "TYPE") return read_each(line, "TYPE", [&](Field& f, auto word) { f.type = read_type(word); });
-    if (keyword == "COUNT") return read_each(line, "COUNT", [&](Field& f, auto word) { f.count = read_count(word); });
-    if (keyword == "WIDTH") return static_cast<void>(header_.width = read_whole(line, "WIDTH"), has_width_ = true);
-    if (keyword == "HEIGHT") return static_cast<void>(header_.height = read_whole(line, "HEIGHT"), has_height_ = true);
-    if (keyword == "POINTS") return static_cast<void>(header_.points = read_whole(line, "POINTS"), has_points_ = true);
+    if (keyword == "SIZE")
+      return read_each(line, "SIZE", [&](Field& f, auto word) { f.size = read_size(word); });
+    if (keyword == "TYPE")
+      return read_each(line, "TYPE", [&](Field& f, auto word) { f.type = read_type(word); });
+    if (keyword == "COUNT")
+      return read_each(line, "COUNT", [&](Field& f, auto word) { f.count = read_count(word); });
+    if (keyword == "WIDTH")
+      return static_cast<void>(header_.width = read_whole(line, "WIDTH"), has_width_ = true);
+    if (keyword == "HEIGHT")
+      return static_cast<void>(header_.height = read_whole(line, "HEIGHT"), has_height_ = true);
+    if (keyword == "POINTS")
+      return static_cast<void>(header_.points = read_whole(line, "POINTS"), has_points_ = true);
     if (keyword == "VIEWPOINT") return read_viewpoint(line);
     if (keyword == "DATA") return read_data(line);
     fail("'{}' is no entry of a PCD header", excerpt(keyword));
@@ -98,7 +104,8 @@ class HeaderReader {
   }
 
   char read_type(std::string_view word) const {
-    if (word != "F" && word != "U" && word != "I") fail("TYPE {} is not valid; valid: F, U or I", excerpt(word));
+    if (word != "F" && word != "U" && word != "I")
+      fail("TYPE {} is not valid; valid: F, U or I", excerpt(word));
     return word[0];
   }
 
@@ -156,11 +163,13 @@ class HeaderReader {
       if (field.size == 0 || field.type == 0)
         throw_io_error("{}: the header gives no SIZE and TYPE for its FIELDS", name_);
       if (field.type == 'F' && field.size < 4)
-        throw_io_error("{}: field {}: a float of {} bytes is not known", name_, excerpt(field.name), field.size);
+        throw_io_error("{}: field {}: a float of {} bytes is not known", name_, excerpt(field.name),
+                       field.size);
     }
     if (!has_width_ && !has_points_) throw_io_error("{}: the header has neither WIDTH nor POINTS", name_);
     if (!has_width_) {
-      if (has_height_ && header_.height != 1) throw_io_error("{}: the header has a HEIGHT, but no WIDTH", name_);
+      if (has_height_ && header_.height != 1)
+        throw_io_error("{}: the header has a HEIGHT, but no WIDTH", name_);
       header_.width = static_cast<std::uint32_t>(header_.points);
     }
     const std::uint64_t grid = std::uint64_t{header_.width} * header_.height;
@@ -184,10 +193,14 @@ ScalarType scalar_type(const Field& field) {
   if (field.type == 'F') return field.size == 4 ? ScalarType::float32 : ScalarType::float64;
   const bool is_signed = field.type == 'I';
   switch (field.size) {
-    case 1: return is_signed ? ScalarType::int8 : ScalarType::uint8;
-    case 2: return is_signed ? ScalarType::int16 : ScalarType::uint16;
-    case 4: return is_signed ? ScalarType::int32 : ScalarType::uint32;
-    default: return is_signed ? ScalarType::int64 : ScalarType::uint64;
+    case 1:
+      return is_signed ? ScalarType::int8 : ScalarType::uint8;
+    case 2:
+      return is_signed ? ScalarType::int16 : ScalarType::uint16;
+    case 4:
+      return is_signed ? ScalarType::int32 : ScalarType::uint32;
+    default:
+      return is_signed ? ScalarType::int64 : ScalarType::uint64;
   }
 }
 
@@ -199,7 +212,8 @@ void for_each_role(const Header& header, const std::string& name, Function&& f) 
   std::size_t position = 0;
   for (const Field& field : header.fields) {
     const std::optional<Role> role = role_of(field.name);
-    if (role && present[*role]) throw_io_error("{}: the field {} stands twice in the header", name, field.name);
+    if (role && present[*role])
+      throw_io_error("{}: the field {} stands twice in the header", name, field.name);
     if (role && field.count != 1)
       throw_io_error("{}: the field {} has {} values a point; expected 1", name, field.name, field.count);
     if (role) {
@@ -217,7 +231,8 @@ void for_each_role(const Header& header, const std::string& name, Function&& f) 
                  header.points, header.point_size(), available);
 }
 
-void decode_ascii(const Header& header, std::string_view data, const std::string& name, double scale, Cloud& cloud) {
+void decode_ascii(const Header& header, std::string_view data, const std::string& name, double scale,
+                  Cloud& cloud) {
   AsciiRows rows;
   for (const Field& field : header.fields) rows.values_per_row += field.count;
   for_each_role(header, name, [&](Role role, const Field& field, std::size_t, std::size_t position) {
@@ -226,11 +241,13 @@ void decode_ascii(const Header& header, std::string_view data, const std::string
   LineScanner lines(data, header.lines);
   const std::vector<double> values = rows.parse(lines, header.points, name);
   if (lines.next_filled())
-    throw_io_error("{}:{}: the header says {} points, but there are more", name, lines.number(), header.points);
+    throw_io_error("{}:{}: the header says {} points, but there are more", name, lines.number(),
+                   header.points);
   rows.columns(values).decode(header.points, scale, name, cloud);
 }
 
-void decode_binary(const Header& header, std::string_view data, const std::string& name, double scale, Cloud& cloud) {
+void decode_binary(const Header& header, std::string_view data, const std::string& name, double scale,
+                   Cloud& cloud) {
   const std::size_t stride = header.point_size();
   CloudColumns columns;
   for_each_role(header, name, [&](Role role, const Field& field, std::size_t offset, std::size_t) {
@@ -256,8 +273,8 @@ std::vector<char> decompress(const Header& header, std::string_view data, const 
     throw_io_error("{}: truncated: {} compressed bytes are announced, but only {} are there", name, packed,
                    data.size());
   if (header.points > unpacked / header.point_size() || header.points * header.point_size() != unpacked)
-    throw_io_error("{}: {} points of {} bytes cannot be the {} bytes that the compressed data announces", name,
-                   header.points, header.point_size(), unpacked);
+    throw_io_error("{}: {} points of {} bytes cannot be the {} bytes that the compressed data announces",
+                   name, header.points, header.point_size(), unpacked);
   if (unpacked / kLongestRun > packed)
     throw_io_error("{}: {} compressed bytes cannot hold the {} that are announced", name, packed, unpacked);
   std::vector<char> out(unpacked);

@@ -29,10 +29,11 @@ std::string format_header(const Cloud& cloud, CloudFormat format) {
                      : format == CloudFormat::pcd_compressed ? "binary_compressed"
                                                              : "binary";
   return fmt::format(
-      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS {}\nSIZE {}\nTYPE {}\nCOUNT {}\nWIDTH {}\n"
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS {}\nSIZE {}\nTYPE {}\nCOUNT {}\nWIDTH "
+      "{}\n"
       "HEIGHT {}\nVIEWPOINT {} {} {} {} {} {} {}\nPOINTS {}\nDATA {}\n",
-      fields, sizes, types, counts, cloud.width, cloud.height, t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z(),
-      cloud.size(), data);
+      fields, sizes, types, counts, cloud.width, cloud.height, t.x(), t.y(), t.z(), q.w(), q.x(), q.y(),
+      q.z(), cloud.size(), data);
 }
 
 std::size_t point_size(const Cloud& cloud) {
@@ -84,8 +85,8 @@ std::string lzf_literals(std::string_view input) {
   return out;
 }
 
-/// PCL's compressor gives up on some inputs and has had outputs that its own reader refused, so what it makes is
-/// read back before it counts.
+/// PCL's compressor gives up on some inputs and has had outputs that its own reader refused, so what it makes
+/// is read back before it counts.
 std::string compress(const std::string& input) {
   const auto size = static_cast<unsigned int>(input.size());
   std::string out(input.size(), '\0');
@@ -100,7 +101,8 @@ void append_compressed(std::string& out, const Cloud& cloud) {
   const std::string fields = fields_one_by_one(cloud);
   // Literal runs add a byte to 32.
   if (fields.size() / 32 * 33 + 33 > std::numeric_limits<std::uint32_t>::max())
-    throw_io_error("a cloud of {} points is too large for a compressed PCD file (4 GB); write it binary", cloud.size());
+    throw_io_error("a cloud of {} points is too large for a compressed PCD file (4 GB); write it binary",
+                   cloud.size());
   const std::string compressed = fields.empty() ? "" : compress(fields);
   for (const std::size_t size : {compressed.size(), fields.size()}) {
     const auto stored = static_cast<std::uint32_t>(size);

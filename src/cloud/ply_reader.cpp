@@ -1,5 +1,6 @@
-/// PLY 1.0 (Turk 1994, "The PLY Polygon File Format"): text and binary of both byte orders. The `vertex` element
-/// becomes the cloud; PCL's `camera` element gives its rows, columns and sensor pose; the rest is skipped.
+/// PLY 1.0 (Turk 1994, "The PLY Polygon File Format"): text and binary of both byte orders. The `vertex`
+/// element becomes the cloud; PCL's `camera` element gives its rows, columns and sensor pose; the rest is
+/// skipped.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,8 +8,8 @@
 
 #include "cloud/cloud_formats.hpp"
 #include "cloud/columns.hpp"
-#include "tubebin/core/text_scan.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/core/text_scan.hpp"
 
 namespace tubebin {
 namespace {
@@ -48,11 +49,11 @@ struct Header {
 
 std::optional<ScalarType> to_scalar_type(std::string_view word) {
   constexpr std::pair<std::string_view, ScalarType> kTypes[] = {
-      {"char", ScalarType::int8},     {"int8", ScalarType::int8},       {"uchar", ScalarType::uint8},
-      {"uint8", ScalarType::uint8},   {"short", ScalarType::int16},     {"int16", ScalarType::int16},
-      {"ushort", ScalarType::uint16}, {"uint16", ScalarType::uint16},   {"int", ScalarType::int32},
-      {"int32", ScalarType::int32},   {"uint", ScalarType::uint32},     {"uint32", ScalarType::uint32},
-      {"int64", ScalarType::int64},   {"uint64", ScalarType::uint64},   {"float", ScalarType::float32},
+      {"char", ScalarType::int8},       {"int8", ScalarType::int8},      {"uchar", ScalarType::uint8},
+      {"uint8", ScalarType::uint8},     {"short", ScalarType::int16},    {"int16", ScalarType::int16},
+      {"ushort", ScalarType::uint16},   {"uint16", ScalarType::uint16},  {"int", ScalarType::int32},
+      {"int32", ScalarType::int32},     {"uint", ScalarType::uint32},    {"uint32", ScalarType::uint32},
+      {"int64", ScalarType::int64},     {"uint64", ScalarType::uint64},  {"float", ScalarType::float32},
       {"float32", ScalarType::float32}, {"double", ScalarType::float64}, {"float64", ScalarType::float64}};
   for (const auto& [name, type] : kTypes)
     if (name == word) return type;
@@ -102,7 +103,8 @@ class HeaderReader {
     else if (format == "binary_big_endian")
       header_.encoding = Encoding::big_endian;
     else
-      fail("format '{}' is not valid; valid: ascii, binary_little_endian, binary_big_endian", excerpt(format));
+      fail("format '{}' is not valid; valid: ascii, binary_little_endian, binary_big_endian",
+           excerpt(format));
   }
 
   void read_element(const std::vector<std::string_view>& words) {
@@ -115,7 +117,8 @@ class HeaderReader {
   void read_property(const std::vector<std::string_view>& words) {
     if (header_.elements.empty()) fail("a property stands before any element");
     const bool list = words.size() == 5 && words[1] == "list";
-    if (!list && words.size() != 3) fail("a property line is 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
+    if (!list && words.size() != 3)
+      fail("a property line is 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
     Property property{words.back(), read_type(words[words.size() - 2]), std::nullopt};
     if (list) property.list_size = read_type(words[2]);
     header_.elements.back().properties.push_back(property);
@@ -154,7 +157,8 @@ class Body {
     std::array<bool, kRoleCount> present{};
     for (const Property& property : element.properties) {
       const std::optional<Role> role = role_of(property.name);
-      if (role && present[*role]) throw_io_error("{}: the property {} stands twice in the header", name_, property.name);
+      if (role && present[*role])
+        throw_io_error("{}: the property {} stands twice in the header", name_, property.name);
       if (role) present[*role] = true;
     }
     require_coordinates(present, name_);
@@ -185,8 +189,8 @@ class Body {
   bool swapped() const { return encoding_ == Encoding::big_endian; }
 
   [[noreturn]] void fail_truncated(const Element& element) const {
-    throw_io_error("{}: truncated: {} {} records are announced, but the file ends before that", name_, element.count,
-                   excerpt(element.name));
+    throw_io_error("{}: truncated: {} {} records are announced, but the file ends before that", name_,
+                   element.count, excerpt(element.name));
   }
 
   const char* take(std::size_t size, const Element& element) {
@@ -213,7 +217,8 @@ class Body {
         take(size_of(property.type), element);
         continue;
       }
-      const double count = scalar_at(take(size_of(*property.list_size), element), *property.list_size, swapped());
+      const double count =
+          scalar_at(take(size_of(*property.list_size), element), *property.list_size, swapped());
       if (!(count >= 0.0 && count <= static_cast<double>(data_.size()))) fail_truncated(element);
       take(static_cast<std::size_t>(count) * size_of(property.type), element);
     }
@@ -249,8 +254,8 @@ class Body {
   const std::string& name_;
 };
 
-/// PCL's camera element: sensor pose, and rows and columns where they fit the points. Other programs' cameras may
-/// mean something else, so what does not make sense is left alone.
+/// PCL's camera element: sensor pose, and rows and columns where they fit the points. Other programs' cameras
+/// may mean something else, so what does not make sense is left alone.
 void apply_camera(const std::map<std::string_view, double>& values, double scale, Cloud& cloud) {
   const auto value = [&](const char* property) {
     const auto found = values.find(property);
@@ -265,7 +270,9 @@ void apply_camera(const std::map<std::string_view, double>& values, double scale
     cloud.world_from_sensor = make_pose(Quat(rotation).normalized(), position * scale);
   const double width = value("viewportx");
   const double height = value("viewporty");
-  if (width < 1.0 || height < 1.0 || width != std::floor(width) || width * height != static_cast<double>(cloud.size())) return;
+  if (width < 1.0 || height < 1.0 || width != std::floor(width) ||
+      width * height != static_cast<double>(cloud.size()))
+    return;
   cloud.width = static_cast<std::uint32_t>(width);
   cloud.height = static_cast<std::uint32_t>(height);
 }
@@ -278,7 +285,9 @@ const Element* find(const Header& header, std::string_view name) {
 
 }  // namespace
 
-bool looks_like_ply(std::string_view bytes) { return bytes.starts_with("ply\n") || bytes.starts_with("ply\r\n"); }
+bool looks_like_ply(std::string_view bytes) {
+  return bytes.starts_with("ply\n") || bytes.starts_with("ply\r\n");
+}
 
 Cloud parse_ply(std::string_view bytes, const std::string& name, double scale) {
   const Header header = HeaderReader(bytes, name).read();
@@ -290,7 +299,8 @@ Cloud parse_ply(std::string_view bytes, const std::string& name, double scale) {
   Cloud cloud;
   std::map<std::string_view, double> camera_values;
   Body body(bytes.substr(header.data_offset), header, name);
-  const Element* last = camera ? std::max(vertices, camera) : vertices;  // what follows need not even be complete
+  const Element* last =
+      camera ? std::max(vertices, camera) : vertices;  // what follows need not even be complete
   for (const Element* element = header.elements.data(); element <= last; ++element) {
     if (element == vertices)
       body.decode_vertices(*element, scale, cloud);

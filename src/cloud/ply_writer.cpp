@@ -18,7 +18,8 @@ constexpr const char* kCameraProperties =
     "property float y_axisx\nproperty float y_axisy\nproperty float y_axisz\n"
     "property float z_axisx\nproperty float z_axisy\nproperty float z_axisz\n"
     "property float focal\nproperty float scalex\nproperty float scaley\nproperty float centerx\n"
-    "property float centery\nproperty int viewportx\nproperty int viewporty\nproperty float k1\nproperty float k2\n";
+    "property float centery\nproperty int viewportx\nproperty int viewporty\nproperty float k1\nproperty "
+    "float k2\n";
 
 std::string format_header(const Cloud& cloud) {
   std::string header = fmt::format(

@@ -62,7 +62,8 @@ class TemporaryFile {
   }
 
   void rename_to_final() {
-    if (::rename(temporary_path_.c_str(), final_path_.c_str()) != 0) fail(final_path_, "cannot be written", errno);
+    if (::rename(temporary_path_.c_str(), final_path_.c_str()) != 0)
+      fail(final_path_, "cannot be written", errno);
     temporary_path_.clear();
   }
 
@@ -90,7 +91,8 @@ class TemporaryFile {
 /// file is as safe as they make it.
 void sync_folder_of(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  const Descriptor descriptor(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const Descriptor descriptor(
+      ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!descriptor || ::fsync(descriptor.number()) == 0 || errno == EINVAL || errno == ENOTSUP) return;
   fail(path, "its folder cannot be synced", errno);
 }

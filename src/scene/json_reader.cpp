@@ -6,8 +6,10 @@
 namespace tubebin {
 namespace {
 
-/// Between a rotation matrix and the quaternion beside it; far above rounding, far below any difference that counts.
-constexpr double kRotationTolerance = 1e-6;
+/// Far above rounding, far below any difference that counts. A quaternion of a matrix that is just
+/// orthonormal enough is a little farther from it.
+constexpr double kOrthonormalTolerance = 1e-6;
+constexpr double kQuaternionTolerance = 1e-5;
 
 std::string limits_text(Limits limits) {
   const Limits open;
@@ -72,7 +74,8 @@ void JsonPlace::fail(const std::string& valid) const {
   constexpr std::size_t kShown = 60;
   std::string shown = value_.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
   if (shown.size() > kShown) shown = shown.substr(0, kShown - 3) + "...";
-  throw_io_error("{}: {}: {} is not valid; valid: {}", file_, pointer_.empty() ? "/" : pointer_, shown, valid);
+  throw_io_error("{}: {}: {} is not valid; valid: {}", file_, pointer_.empty() ? "/" : pointer_, shown,
+                 valid);
 }
 
 JsonPlace JsonPlace::at(const char* key) const {
@@ -140,11 +143,11 @@ Pose JsonPlace::pose() const {
   const std::vector<JsonPlace> rows = rotation.elements(3);
   for (int row = 0; row < 3; ++row) pose.linear().row(row) = rows[static_cast<std::size_t>(row)].vector();
   const Eigen::Matrix3d matrix = pose.linear();
-  if (!(matrix * matrix.transpose()).isIdentity(kRotationTolerance) || matrix.determinant() < 0.0)
+  if (!(matrix * matrix.transpose()).isIdentity(kOrthonormalTolerance) || matrix.determinant() < 0.0)
     rotation.fail("the rows of a rotation matrix");
   const std::vector<JsonPlace> q = quaternion.elements(4);
   const Quat other(q[0].number(), q[1].number(), q[2].number(), q[3].number());
-  if (!other.toRotationMatrix().isApprox(matrix, kRotationTolerance))
+  if (!other.toRotationMatrix().isApprox(matrix, kQuaternionTolerance))
     quaternion.fail("the unit quaternion [w, x, y, z] of the rotation matrix beside it");
   return pose;
 }
@@ -155,7 +158,8 @@ void JsonPlace::fields(const std::function<void(Fields&)>& describe) const {
 }
 
 void JsonPlace::expect_near(double expected, double tolerance) const {
-  if (!(std::abs(number() - expected) <= tolerance)) fail(fmt::format("{}, as it follows from the rest", expected));
+  if (!(std::abs(number() - expected) <= tolerance))
+    fail(fmt::format("{}, as it follows from the rest", expected));
 }
 
 }  // namespace tubebin

@@ -14,7 +14,8 @@ namespace tubebin {
 /// Parses the text; throws IoError "name:line:column: ..." where it is no JSON.
 nlohmann::json parse_json(std::string_view text, const std::string& name);
 
-/// A value and where it stands. All functions throw IoError naming file, pointer, value and what would be right.
+/// A value and where it stands. All functions throw IoError naming file, pointer, value and what would be
+/// right.
 class JsonPlace {
  public:
   JsonPlace(const nlohmann::json& root, const std::string& file) : JsonPlace(root, file, "") {}

@@ -12,8 +12,8 @@ using OrderedJson = nlohmann::ordered_json;
 /// Throws std::invalid_argument where the number is not finite: JSON has no such number.
 OrderedJson to_json(double number);
 OrderedJson to_json(const Vec3& vector);
-/// {"position": [x, y, z], "quaternion": [w, x, y, z], "rotation": rows of the matrix}. The matrix reads back bit by
-/// bit; the quaternion is the same rotation for those who prefer it.
+/// {"position": [x, y, z], "quaternion": [w, x, y, z], "rotation": rows of the matrix}. The matrix reads back
+/// bit by bit; the quaternion is the same rotation for those who prefer it.
 OrderedJson to_json(const Pose& pose);
 
 /// The fields that `describe` names, as an object.

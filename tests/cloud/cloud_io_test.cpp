@@ -16,8 +16,8 @@
 namespace tubebin {
 namespace {
 
-constexpr CloudFormat kFormats[] = {CloudFormat::pcd_binary, CloudFormat::pcd_compressed, CloudFormat::pcd_ascii,
-                                    CloudFormat::ply_binary};
+constexpr CloudFormat kFormats[] = {CloudFormat::pcd_binary, CloudFormat::pcd_compressed,
+                                    CloudFormat::pcd_ascii, CloudFormat::ply_binary};
 
 struct Contents {
   bool organized = true;
@@ -36,7 +36,8 @@ Cloud make_cloud(std::uint32_t width, std::uint32_t height, Contents contents = 
     const bool hit = i % 7 != 3;
     const auto draw = [&] { return static_cast<float>(random.uniform(-1.0, 1.0)); };
     cloud.points.push_back(hit ? Point(draw(), draw(), draw()) : Point(nan, nan, nan));
-    if (contents.colors) cloud.colors.push_back(hit ? static_cast<Color>(random.integer(1, 0xFFFFFF)) : kNullColor);
+    if (contents.colors)
+      cloud.colors.push_back(hit ? static_cast<Color>(random.integer(1, 0xFFFFFF)) : kNullColor);
     if (contents.labels) cloud.labels.push_back(hit ? static_cast<Label>(random.integer(0, 300)) : 0);
   }
   cloud.world_from_sensor = make_pose(random.rotation(), Vec3(0.25, -0.5, 2.0));
@@ -49,7 +50,8 @@ void expect_same(const Cloud& actual, const Cloud& expected, double pose_toleran
   ASSERT_EQ(actual.size(), expected.size());
   EXPECT_EQ(actual.colors, expected.colors);
   EXPECT_EQ(actual.labels, expected.labels);
-  EXPECT_TRUE(actual.world_from_sensor.matrix().isApprox(expected.world_from_sensor.matrix(), pose_tolerance));
+  EXPECT_TRUE(
+      actual.world_from_sensor.matrix().isApprox(expected.world_from_sensor.matrix(), pose_tolerance));
   for (std::size_t i = 0; i < expected.size(); ++i) {
     if (is_finite(expected.points[i]))
       ASSERT_EQ(actual.points[i], expected.points[i]) << i;
@@ -58,12 +60,16 @@ void expect_same(const Cloud& actual, const Cloud& expected, double pose_toleran
   }
 }
 
-std::string temporary_path(const std::string& name) { return ::testing::TempDir() + "tubebin_cloud_io_" + name; }
+std::string temporary_path(const std::string& name) {
+  return ::testing::TempDir() + "tubebin_cloud_io_" + name;
+}
 
 TEST(CloudIo, EveryFormatReadsBackTheSame) {
   for (const CloudFormat format : kFormats)
-    for (const Contents contents : {Contents{}, {false, true, true}, {true, false, true}, {false, false, false}}) {
-      SCOPED_TRACE(testing::Message() << "format " << static_cast<int>(format) << " colors " << contents.colors);
+    for (const Contents contents :
+         {Contents{}, {false, true, true}, {true, false, true}, {false, false, false}}) {
+      SCOPED_TRACE(testing::Message()
+                   << "format " << static_cast<int>(format) << " colors " << contents.colors);
       const Cloud cloud = make_cloud(40, 30, contents);
       const std::string path = temporary_path("round_trip") + extension(format);
       write_cloud(path, cloud, format);
@@ -133,10 +139,11 @@ TEST(CloudIo, PclReadsWhatWeWrite) {
     std::filesystem::remove(path);
     ASSERT_EQ(theirs.points.width, cloud.width);
     ASSERT_EQ(theirs.points.height, cloud.height);
-    if (format != CloudFormat::ply_binary) {  // PCL 1.13 does not hand on the pose, of its own PLY files neither
+    if (format !=
+        CloudFormat::ply_binary) {  // PCL 1.13 does not hand on the pose, of its own PLY files neither
       EXPECT_TRUE(theirs.origin.head<3>().isApprox(cloud.world_from_sensor.translation().cast<float>()));
-      EXPECT_TRUE(
-          theirs.orientation.toRotationMatrix().isApprox(cloud.world_from_sensor.linear().cast<float>(), 1e-5F));
+      EXPECT_TRUE(theirs.orientation.toRotationMatrix().isApprox(
+          cloud.world_from_sensor.linear().cast<float>(), 1e-5F));
     }
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const auto& point = theirs.points[i];
@@ -207,7 +214,8 @@ std::string raw(Values... values) {
 
 TEST(CloudIo, ReadsOtherTypesOrdersAndExtraFields) {
   const std::string header =
-      "VERSION .7\nFIELDS label normal z _ y x rgba\nSIZE 2 4 8 1 8 8 4\nTYPE I F F U F F U\nCOUNT 1 3 1 5 1 1 1\n"
+      "VERSION .7\nFIELDS label normal z _ y x rgba\nSIZE 2 4 8 1 8 8 4\nTYPE I F F U F F U\nCOUNT 1 3 1 5 1 "
+      "1 1\n"
       "WIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 2 0 1 0 0\nPOINTS 2\nDATA binary\n";
   const auto point = [](std::int16_t label, double x, std::uint32_t rgba) {
     return raw(label, 0.F, 0.F, 1.F, x + 2, char{}, char{}, char{}, char{}, char{}, x + 1, x, rgba);
@@ -216,12 +224,14 @@ TEST(CloudIo, ReadsOtherTypesOrdersAndExtraFields) {
   EXPECT_EQ(cloud.points, (std::vector<Point>{{1, 2, 3}, {10, 11, 12}}));
   EXPECT_EQ(cloud.labels, (std::vector<Label>{5, 0}));
   EXPECT_EQ(cloud.colors, (std::vector<Color>{0x804020, 0xFFFFFF}));
-  EXPECT_TRUE(cloud.world_from_sensor.linear().isApprox(Eigen::Vector3d(1, -1, -1).asDiagonal().toDenseMatrix()));
+  EXPECT_TRUE(
+      cloud.world_from_sensor.linear().isApprox(Eigen::Vector3d(1, -1, -1).asDiagonal().toDenseMatrix()));
 }
 
 TEST(CloudIo, ReadsTextWithFloatColorsWindowsLinesAndNoPoints) {
   const std::string text =
-      "# .PCD v.7\r\nVERSION .7\r\nFIELDS x y z rgb\r\nSIZE 4 4 4 4\r\nTYPE F F F F\r\nWIDTH 3\r\nHEIGHT 1\r\n"
+      "# .PCD v.7\r\nVERSION .7\r\nFIELDS x y z rgb\r\nSIZE 4 4 4 4\r\nTYPE F F F F\r\nWIDTH 3\r\nHEIGHT "
+      "1\r\n"
       "DATA ascii\r\n1 +2 3e0 4.2108e+06\r\nnan nan nan 0\r\n\r\n0.5 1e-50 -inf 2.3418052e-38\r\n";
   const Cloud cloud = parse_cloud(text, "text");
   ASSERT_EQ(cloud.size(), 3U);
@@ -238,7 +248,8 @@ TEST(CloudIo, ReadsBigEndianPlyWithDoublesAndFacesFirst) {
     return std::string(bytes.rbegin(), bytes.rend());
   };
   const std::string header =
-      "ply\nformat binary_big_endian 1.0\ncomment hi\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "ply\nformat binary_big_endian 1.0\ncomment hi\nelement face 1\nproperty list uchar int "
+      "vertex_indices\n"
       "element vertex 2\nproperty double x\nproperty double y\nproperty double z\nproperty float nx\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty short label\nend_header\n";
   std::string body = big(std::uint8_t{3}) + big(0) + big(1) + big(2);

@@ -10,7 +10,8 @@
 namespace tubebin {
 namespace {
 
-/// "Redmean" distance (T. Riemersma, "Colour metric"): a second opinion on how different two colours look, 0 to 765.
+/// "Redmean" distance (T. Riemersma, "Colour metric"): a second opinion on how different two colours look, 0
+/// to 765.
 double redmean(Color a, Color b) {
   const auto channel = [](Color color, int shift) { return static_cast<double>(color >> shift & 0xFF); };
   const double mean = (channel(a, 16) + channel(b, 16)) / 2.0;
@@ -43,7 +44,8 @@ TEST(LabelColors, TheBinIsGreyAndALabelKeepsItsColorInEveryScene) {
   EXPECT_EQ(many[0] >> 16, many[0] & 0xFF);
   EXPECT_EQ(many[0] >> 8 & 0xFF, many[0] & 0xFF);
   for (std::size_t count = 0; count < 50; ++count)
-    EXPECT_EQ(label_colors(count), std::vector<Color>(many.begin(), many.begin() + static_cast<long>(count) + 1));
+    EXPECT_EQ(label_colors(count),
+              std::vector<Color>(many.begin(), many.begin() + static_cast<long>(count) + 1));
 }
 
 TEST(LabelColors, AreWellApartUpToTwentyTubes) {

@@ -60,6 +60,7 @@ TEST(Yaml, WritesWhatReadsBackTheSame) {
   Options o;
   o.radius = 0.1 + 0.2;
   o.list = {5, 6, 7};
+  o.name = "two\nlines\t\"and\\\x7F: #";
   const Options back = read(write_yaml([&](Fields& f) { describe(f, o); }));
   EXPECT_EQ(back.radius, o.radius);
   EXPECT_EQ(back.name, o.name);

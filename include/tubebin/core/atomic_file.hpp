@@ -1,5 +1,5 @@
-/// Whole files in and out. A file that is written is complete and on the disk under a temporary name beside it
-/// before it takes its own name, so that no reader and no crash ever meets half of one.
+/// Whole files in and out. A file that is written is complete and on the disk under a temporary name beside
+/// it before it takes its own name, so that no reader and no crash ever meets half of one.
 #pragma once
 
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace tubebin {
 
-/// Writes the bytes as the file `path`, replacing what was there. On failure (a full disk, a missing folder, no
-/// permission) nothing is left behind, an old file of that name stays as it was, and IoError names path and cause.
+/// Writes the bytes as the file `path`, replacing what was there. On failure (a full disk, a missing folder,
+/// no permission) nothing is left behind, an old file of that name stays as it was, and IoError names path
+/// and cause.
 void write_file_atomically(const std::string& path, std::string_view bytes);
 
 /// The bytes of a regular file. Throws IoError naming path and cause.

@@ -13,7 +13,8 @@ namespace tubebin {
 /// Hands out a text line by line, without "\n" or "\r\n", and counts.
 class LineScanner {
  public:
-  explicit LineScanner(std::string_view text, std::size_t lines_before = 0) : text_(text), number_(lines_before) {}
+  explicit LineScanner(std::string_view text, std::size_t lines_before = 0)
+      : text_(text), number_(lines_before) {}
 
   /// The next line; nothing at the end of the text.
   std::optional<std::string_view> next() {
@@ -33,8 +34,8 @@ class LineScanner {
     return line;
   }
 
-  std::size_t number() const { return number_; }  ///< of the line handed out last, from 1
-  std::size_t offset() const { return offset_; }  ///< where the next line starts
+  std::size_t number() const { return number_; }                    ///< of the line handed out last, from 1
+  std::size_t offset() const { return offset_; }                    ///< where the next line starts
   std::size_t remaining() const { return text_.size() - offset_; }  ///< bytes
 
  private:

@@ -13,22 +13,22 @@ namespace tubebin {
 
 /// Everything that scene.json holds.
 struct SceneRecord {
-  std::string id;                         ///< "A10/007"
-  std::uint64_t seed = 0;                 ///< of the attempt that succeeded
+  std::string id;          ///< "A10/007"
+  std::uint64_t seed = 0;  ///< of the attempt that succeeded
   Scene scene;
-  PixelWindow window;                     ///< of the organized cloud in the full image
-  std::vector<Color> colors;              ///< of label 0 (bin) and every tube
-  std::vector<std::size_t> tube_pixels;   ///< visible pixels of tube k at [k - 1]
+  PixelWindow window;                    ///< of the organized cloud in the full image
+  std::vector<Color> colors;             ///< of label 0 (bin) and every tube
+  std::vector<std::size_t> tube_pixels;  ///< visible pixels of tube k at [k - 1]
   std::vector<Contact> contacts;
 };
 
-/// JSON text; equal records give equal bytes. Throws std::invalid_argument where the record contradicts itself
-/// (sizes of lists) or holds a number that is not finite.
+/// JSON text; equal records give equal bytes. Throws std::invalid_argument where the record contradicts
+/// itself (sizes of lists) or holds a number that is not finite.
 std::string format_scene_json(const SceneRecord& record);
 
-/// The record that was written, every number and pose bit by bit. Keys that this version does not know are left
-/// alone. Throws IoError naming the file and the place (JSON pointer) of what is missing or wrong, also where
-/// convenience values (lengths, nodes in world, quaternions) disagree with what they derive from.
+/// The record that was written, every number and pose bit by bit. Keys that this version does not know are
+/// left alone. Throws IoError naming the file and the place (JSON pointer) of what is missing or wrong, also
+/// where convenience values (lengths, nodes in world, quaternions) disagree with what they derive from.
 SceneRecord read_scene_json(const std::string& path);
 
 /// As read_scene_json, from a text; `name` stands for the file in messages.

@@ -1,0 +1,113 @@
+/// What a fuzzer calls with any bytes, one function a reader. A reader may refuse its input with the error
+/// that it documents, and with no other; what it accepts must survive a round trip.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/core/error.hpp"
+#include "tubebin/core/yaml.hpp"
+#include "tubebin/scene/scene_json.hpp"
+#include "tubebin/scene/tubes_txt.hpp"
+#include "tubebin/tube/tube_generator.hpp"
+
+namespace tubebin::fuzz {
+
+inline void require(bool condition, const char* what) {
+  if (condition) return;
+  std::fprintf(stderr, "broken: %s\n", what);
+  std::abort();
+}
+
+/// A NaN is as good as any other.
+inline bool same_points(const std::vector<Point>& a, const std::vector<Point>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      if (a[i][axis] != b[i][axis] && !(a[i][axis] != a[i][axis] && b[i][axis] != b[i][axis])) return false;
+  return true;
+}
+
+inline void cloud(std::string_view bytes) {
+  Cloud cloud;
+  try {
+    cloud = parse_cloud(bytes, "fuzz");
+  } catch (const IoError&) {
+    return;
+  }
+  for (const CloudFormat format : {CloudFormat::pcd_binary, CloudFormat::pcd_compressed,
+                                   CloudFormat::pcd_ascii, CloudFormat::ply_binary}) {
+    const Cloud back = parse_cloud(format_cloud(cloud, format), "round trip");
+    require(same_points(back.points, cloud.points), "points read back");
+    require(back.colors == cloud.colors && back.labels == cloud.labels, "colours and labels read back");
+    require(back.width == cloud.width && back.height == cloud.height, "rows and columns read back");
+  }
+}
+
+inline void tubes_txt(std::string_view bytes) {
+  std::vector<PlacedTube> tubes;
+  try {
+    tubes = parse_tubes_txt(bytes, "fuzz");
+  } catch (const IoError&) {
+    return;
+  }
+  const std::string text = format_tubes_txt(tubes);
+  require(format_tubes_txt(parse_tubes_txt(text, "round trip")) == text, "tubes read back");
+}
+
+inline void scene_json(std::string_view bytes) {
+  SceneRecord record;
+  try {
+    record = parse_scene_json(bytes, "fuzz");
+  } catch (const IoError&) {
+    return;
+  }
+  const std::string text = format_scene_json(record);
+  require(format_scene_json(parse_scene_json(text, "round trip")) == text, "the scene reads back");
+}
+
+/// An options struct with a field of every kind.
+struct Options {
+  std::uint64_t seed = 1;
+  bool flag = false;
+  std::string text = "text";
+  std::vector<int> integers = {1};
+  TubeOptions tube;
+  Bin bin;
+  Scanner scanner;
+};
+
+inline void describe_all(Fields& fields, Options& options) {
+  fields.seed("seed", options.seed, "");
+  fields.flag("flag", options.flag, "");
+  fields.text("text", options.text, "");
+  fields.integers("integers", options.integers, {0, 1000}, "");
+  fields.group("tube", "", [&](Fields& inner) { describe(inner, options.tube); });
+  fields.group("bin", "", [&](Fields& inner) { describe(inner, options.bin); });
+  fields.group("scanner", "", [&](Fields& inner) { describe(inner, options.scanner); });
+}
+
+inline void yaml(std::string_view bytes) {
+  Options options;
+  const auto read = [](const std::string& text, Options& into) {
+    read_yaml_text(text, "fuzz", [&](Fields& fields) { describe_all(fields, into); });
+  };
+  const auto write = [](Options& from) {
+    return write_yaml([&](Fields& fields) { describe_all(fields, from); });
+  };
+  try {
+    read(std::string(bytes), options);
+  } catch (const ConfigError&) {
+    return;
+  }
+  const std::string text = write(options);
+  Options back;
+  read(text, back);
+  require(write(back) == text, "the options read back");
+}
+
+}  // namespace tubebin::fuzz
