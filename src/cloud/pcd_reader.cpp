@@ -177,6 +177,7 @@ class HeaderReader {
       throw_io_error("{}: the header says {} points, but {} x {}", name_, header_.points, header_.width,
                      header_.height);
     header_.points = grid;
+    if (grid == 0) header_.width = 0, header_.height = 1;
   }
 
   std::string_view bytes_;

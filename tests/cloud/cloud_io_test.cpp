@@ -88,6 +88,13 @@ TEST(CloudIo, AnEmptyCloudAndOnePointReadBack) {
   }
 }
 
+TEST(CloudIo, RowsWithoutColumnsAreAnEmptyCloud) {
+  const Cloud cloud = parse_cloud(
+      "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 0\nHEIGHT 4000000000\nPOINTS 0\nDATA ascii\n", "a");
+  EXPECT_EQ(cloud.size(), 0U);
+  EXPECT_FALSE(cloud.organized());
+}
+
 TEST(CloudIo, EqualCloudsGiveEqualBytes) {
   for (const CloudFormat format : kFormats)
     EXPECT_EQ(format_cloud(make_cloud(20, 10), format), format_cloud(make_cloud(20, 10), format));
