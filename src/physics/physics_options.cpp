@@ -31,7 +31,8 @@ void describe(Fields& fields, PhysicsOptions& o) {
   fields.number("rest_speed", o.rest_speed, {1e-6, 10.0}, "m/s", "a tube slower than this may be at rest");
   fields.number("rest_turn_rate", o.rest_turn_rate, {1e-6, 100.0}, "rad/s",
                 "a tube that turns slower than this may be at rest");
-  fields.number("rest_window", o.rest_window, {0.0, 100.0}, "s", "how long all tubes stay below both at rest");
+  fields.number("rest_window", o.rest_window, {0.02, 100.0}, "s",
+                "how long all tubes stay below both at rest; longer than a tube takes from a standstill to rest_speed");
   fields.number("check_time", o.check_time, {0.0, 100.0}, "s",
                 "how long the simulation runs on to prove that nothing moves");
   fields.number("drift_max", o.drift_max, {0.0, 1.0}, "m", "farthest that a tube's end may move in check_time");
