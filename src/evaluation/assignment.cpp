@@ -6,8 +6,8 @@ namespace tubebin {
 namespace {
 
 /// Shortest augmenting paths with potentials (Jonker & Volgenant 1987, after Kuhn 1955 and Munkres 1957) over
-/// weights with no more rows than columns. Indices count from 1; 0 stands for "none", and column 0 holds the row
-/// that is being inserted. Integer weights keep the potentials exact.
+/// weights with no more rows than columns. Indices count from 1; 0 stands for "none", and column 0 holds the
+/// row that is being inserted. Integer weights keep the potentials exact.
 class HungarianMethod {
  public:
   explicit HungarianMethod(const Counts& weights)
@@ -62,7 +62,8 @@ class HungarianMethod {
     return nearest;
   }
 
-  void shift_potentials(std::int64_t delta, std::vector<std::int64_t>& distance, const std::vector<char>& visited) {
+  void shift_potentials(std::int64_t delta, std::vector<std::int64_t>& distance,
+                        const std::vector<char>& visited) {
     for (std::size_t column = 0; column < distance.size(); ++column) {
       if (visited[column]) {
         row_potential_[count(row_of_column_[column])] += delta;
@@ -98,7 +99,8 @@ std::vector<int> max_weight_assignment(const Counts& weights) {
     int row_index = row_of_column[column] - 1;
     int column_index = static_cast<int>(column) - 1;
     if (transposed) std::swap(row_index, column_index);
-    if (weights(row_index, column_index) > 0) column_of_row[static_cast<std::size_t>(row_index)] = column_index;
+    if (weights(row_index, column_index) > 0)
+      column_of_row[static_cast<std::size_t>(row_index)] = column_index;
   }
   return column_of_row;
 }

@@ -33,7 +33,8 @@ SegmentField automatic_field(const NamedCloud& named) {
   if (cloud.colors.empty()) return SegmentField::label;
   if (const auto point = first_disagreement(cloud))
     throw_io_error(
-        "{}: its labels and its colours do not tell the same segments apart (point {}: label {}, colour #{:06x}); "
+        "{}: its labels and its colours do not tell the same segments apart (point {}: label {}, colour "
+        "#{:06x}); "
         "choose one with --field label or --field color",
         named.name, *point, cloud.labels[*point], cloud.colors[*point]);
   return SegmentField::label;
@@ -44,7 +45,8 @@ SegmentField resolve_field(const NamedCloud& named, SegmentField field) {
   if (field == SegmentField::automatic) return automatic_field(named);
   if (field == SegmentField::label && named.cloud.labels.empty())
     throw_io_error("{}: has no label field", named.name);
-  if (field == SegmentField::color && named.cloud.colors.empty()) throw_io_error("{}: has no colours", named.name);
+  if (field == SegmentField::color && named.cloud.colors.empty())
+    throw_io_error("{}: has no colours", named.name);
   return field;
 }
 
@@ -58,8 +60,8 @@ void require_points(const NamedCloud& named) {
 }
 
 /// Predicted ids in the filtered cloud's order; `found` tells which points the labelled cloud has.
-std::vector<SegmentId> predicted_ids(const NamedCloud& filtered, const NamedCloud& labeled, SegmentField field,
-                                     std::vector<char>& found) {
+std::vector<SegmentId> predicted_ids(const NamedCloud& filtered, const NamedCloud& labeled,
+                                     SegmentField field, std::vector<char>& found) {
   const std::vector<std::uint32_t> point_of =
       corresponding_points(labeled.cloud.points, filtered.cloud.points, kPositionTolerance);
   const std::vector<SegmentId>& ids = ids_of(labeled.cloud, field);
@@ -77,7 +79,8 @@ std::vector<SegmentId> predicted_ids(const NamedCloud& filtered, const NamedClou
   if (strangers > 0) {
     const Point& p = labeled.cloud.points[first_stranger];
     throw_io_error(
-        "{}: {} of its {} points are at no point of {} (the first is point {} at {} {} {} m); a labelled cloud has "
+        "{}: {} of its {} points are at no point of {} (the first is point {} at {} {} {} m); a labelled "
+        "cloud has "
         "points of the filtered cloud alone",
         labeled.name, strangers, labeled.cloud.size(), filtered.name, first_stranger, p.x(), p.y(), p.z());
   }
@@ -108,7 +111,8 @@ PairedIds pair_clouds(const NamedCloud& filtered, const NamedCloud& labeled, Seg
     pairs.predicted.push_back(predicted[i]);
     pairs.missing += found[i] ? 0 : 1;
   }
-  if (pairs.truth.empty()) throw_io_error("{}: every point has the null colour, so there is no ground truth", filtered.name);
+  if (pairs.truth.empty())
+    throw_io_error("{}: every point has the null colour, so there is no ground truth", filtered.name);
   return pairs;
 }
 

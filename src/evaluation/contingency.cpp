@@ -26,7 +26,8 @@ Indexed index_ids(std::span<const SegmentId> ids) {
   std::uint32_t last_index = 0;
   for (const SegmentId id : ids) {
     if (indexed.ids.empty() || id != last_id) {
-      const auto [entry, is_new] = index_of_id.try_emplace(id, static_cast<std::uint32_t>(indexed.ids.size()));
+      const auto [entry, is_new] =
+          index_of_id.try_emplace(id, static_cast<std::uint32_t>(indexed.ids.size()));
       if (is_new) indexed.ids.push_back(id);
       last_id = id;
       last_index = entry->second;
@@ -36,7 +37,8 @@ Indexed index_ids(std::span<const SegmentId> ids) {
   std::vector<SegmentId> sorted = indexed.ids;
   std::sort(sorted.begin(), sorted.end());
   std::vector<std::uint32_t> rank(sorted.size());
-  for (std::size_t i = 0; i < sorted.size(); ++i) rank[index_of_id.at(sorted[i])] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    rank[index_of_id.at(sorted[i])] = static_cast<std::uint32_t>(i);
   for (std::uint32_t& index : indexed.index_of_point) index = rank[index];
   indexed.ids = std::move(sorted);
   return indexed;
@@ -58,7 +60,8 @@ Contingency count_pairs(std::span<const SegmentId> truth, std::span<const Segmen
     throw_io_error("{} different ground-truth colours or labels and {} predicted ones: these are no segments",
                    rows.ids.size(), columns.ids.size());
 
-  Counts counts = Counts::Zero(static_cast<Eigen::Index>(rows.ids.size()), static_cast<Eigen::Index>(columns.ids.size()));
+  Counts counts =
+      Counts::Zero(static_cast<Eigen::Index>(rows.ids.size()), static_cast<Eigen::Index>(columns.ids.size()));
   for (std::size_t i = 0; i < truth.size(); ++i) ++counts(rows.index_of_point[i], columns.index_of_point[i]);
 
   Contingency contingency;
@@ -68,7 +71,8 @@ Contingency count_pairs(std::span<const SegmentId> truth, std::span<const Segmen
   contingency.bin_id = bin_id;
   // Ids are in ascending order, so the null id, if any, is the first column.
   if (!columns.ids.empty() && columns.ids.front() == kNullId) {
-    for (std::size_t row = 0; row < rows.ids.size(); ++row) contingency.unlabeled[row] = counts(static_cast<Eigen::Index>(row), 0);
+    for (std::size_t row = 0; row < rows.ids.size(); ++row)
+      contingency.unlabeled[row] = counts(static_cast<Eigen::Index>(row), 0);
     contingency.predicted_ids.erase(contingency.predicted_ids.begin());
     counts = counts.rightCols(counts.cols() - 1).eval();
   }

@@ -20,8 +20,8 @@ std::uint64_t position_hash(const Point& point) {
   return mix(bits(point.x()), bits(point.y()), bits(point.z()));
 }
 
-/// Points chained by hash, each chain in the points' order. A point that is taken leaves its chain, so a thousand
-/// points at one position cost no more than a thousand at as many positions.
+/// Points chained by hash, each chain in the points' order. A point that is taken leaves its chain, so a
+/// thousand points at one position cost no more than a thousand at as many positions.
 class PointChains {
  public:
   explicit PointChains(std::size_t capacity)
@@ -53,7 +53,8 @@ class PointChains {
 };
 
 bool in_the_same_order(std::span<const Point> a, std::span<const Point> b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const Point& p, const Point& q) {
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [](const Point& p, const Point& q) {
            return p == q || (!is_finite(p) && !is_finite(q));
          });
 }
@@ -73,7 +74,8 @@ void match_equal(std::span<const Point> queries, std::span<const Point> referenc
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const Point& query = queries[i];
     if (!is_finite(query)) continue;
-    result[i] = chains.take_first(position_hash(query), [&](std::uint32_t p) { return reference[p] == query; });
+    result[i] =
+        chains.take_first(position_hash(query), [&](std::uint32_t p) { return reference[p] == query; });
   }
 }
 
@@ -82,7 +84,8 @@ void match_near(std::span<const Point> queries, std::span<const Point> reference
                 std::vector<std::uint32_t>& result) {
   const double cell_size = 2.0 * static_cast<double>(tolerance);
   const auto cell = [&](double coordinate) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(std::clamp(coordinate / cell_size, -1e15, 1e15))));
+    return static_cast<std::uint64_t>(
+        static_cast<std::int64_t>(std::floor(std::clamp(coordinate / cell_size, -1e15, 1e15))));
   };
   std::vector<char> taken(reference.size(), 0);
   for (const std::uint32_t point : result)
@@ -91,15 +94,19 @@ void match_near(std::span<const Point> queries, std::span<const Point> reference
   PointChains chains(reference.size());
   for (std::size_t i = reference.size(); i-- > 0;) {
     const Point& p = reference[i];
-    if (!taken[i] && is_finite(p)) chains.add(mix(cell(p.x()), cell(p.y()), cell(p.z())), static_cast<std::uint32_t>(i));
+    if (!taken[i] && is_finite(p))
+      chains.add(mix(cell(p.x()), cell(p.y()), cell(p.z())), static_cast<std::uint32_t>(i));
   }
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const Point& query = queries[i];
     if (result[i] != kNoPoint || !is_finite(query)) continue;
-    const auto is_near = [&](std::uint32_t p) { return (reference[p] - query).cwiseAbs().maxCoeff() <= tolerance; };
+    const auto is_near = [&](std::uint32_t p) {
+      return (reference[p] - query).cwiseAbs().maxCoeff() <= tolerance;
+    };
     for (int corner = 0; corner < 8 && result[i] == kNoPoint; ++corner) {
       const auto side = [&](int axis) {
-        const double offset = (corner >> axis) & 1 ? static_cast<double>(tolerance) : -static_cast<double>(tolerance);
+        const double offset =
+            (corner >> axis) & 1 ? static_cast<double>(tolerance) : -static_cast<double>(tolerance);
         return cell(static_cast<double>(query[axis]) + offset);
       };
       result[i] = chains.take_first(mix(side(0), side(1), side(2)), is_near);
@@ -109,8 +116,8 @@ void match_near(std::span<const Point> queries, std::span<const Point> reference
 
 }  // namespace
 
-std::vector<std::uint32_t> corresponding_points(std::span<const Point> queries, std::span<const Point> reference,
-                                                float tolerance) {
+std::vector<std::uint32_t> corresponding_points(std::span<const Point> queries,
+                                                std::span<const Point> reference, float tolerance) {
   if (in_the_same_order(queries, reference)) return identity(queries);
   std::vector<std::uint32_t> result(queries.size(), kNoPoint);
   match_equal(queries, reference, result);

@@ -46,7 +46,8 @@ std::int64_t best_by_brute_force(const Counts& weights) {
   std::int64_t best = 0;
   do {
     std::int64_t sum = 0;
-    for (Eigen::Index row = 0; row < wide.rows(); ++row) sum += wide(row, columns[static_cast<std::size_t>(row)]);
+    for (Eigen::Index row = 0; row < wide.rows(); ++row)
+      sum += wide(row, columns[static_cast<std::size_t>(row)]);
     best = std::max(best, sum);
   } while (std::next_permutation(columns.begin(), columns.end()));
   return best;
@@ -61,7 +62,8 @@ TEST(Assignment, PaperExample) {
 TEST(Assignment, EqualsBruteForceOnSmallCases) {
   Random random(5);
   for (int round = 0; round < 600; ++round) {
-    const Counts weights = random_weights(random.integer(1, 6), random.integer(1, 6), random.integer(1, 20), random);
+    const Counts weights =
+        random_weights(random.integer(1, 6), random.integer(1, 6), random.integer(1, 20), random);
     EXPECT_EQ(total(weights, max_weight_assignment(weights)), best_by_brute_force(weights)) << weights;
   }
 }
@@ -122,9 +124,12 @@ TEST(Assignment, EqualsScipyOnRandomCases) {
       file << weights.format(Eigen::IOFormat(Eigen::StreamPrecision, Eigen::DontAlignCols, " ", ";")) << "\n";
     }
   }
-  const auto scipy = testing::run_command(
-      *python + " -c 'import numpy as np; from scipy.optimize import linear_sum_assignment as lsa\nfor line in open(\"" +
-      path + "\"):\n w = np.array([r.split() for r in line.split(\";\")], dtype=np.int64)\n print(w[lsa(w, maximize=True)].sum())'");
+  const auto scipy = testing::run_command(*python +
+                                          " -c 'import numpy as np; from scipy.optimize import "
+                                          "linear_sum_assignment as lsa\nfor line in open(\"" +
+                                          path +
+                                          "\"):\n w = np.array([r.split() for r in line.split(\";\")], "
+                                          "dtype=np.int64)\n print(w[lsa(w, maximize=True)].sum())'");
   ASSERT_EQ(scipy.exit_code, 0);
   std::istringstream output(scipy.output);
   for (const std::int64_t expected : totals) {

@@ -20,7 +20,8 @@ const float nan = std::numeric_limits<float>::quiet_NaN();
 Cloud random_cloud(std::size_t size, Random& random) {
   Cloud cloud;
   for (std::size_t i = 0; i < size; ++i) {
-    cloud.points.emplace_back(static_cast<float>(random.uniform(-0.3, 0.3)), static_cast<float>(random.uniform(-0.2, 0.2)),
+    cloud.points.emplace_back(static_cast<float>(random.uniform(-0.3, 0.3)),
+                              static_cast<float>(random.uniform(-0.2, 0.2)),
                               static_cast<float>(random.uniform(0.0, 0.2)));
     cloud.labels.push_back(static_cast<Label>(random.integer(0, 10)));
   }
@@ -50,7 +51,8 @@ PairedIds pair(const Cloud& filtered, const Cloud& labeled, SegmentField field =
   return pair_clouds({filtered, "filtered.pcd"}, {labeled, "labeled.pcd"}, field);
 }
 
-std::string error_of(const Cloud& filtered, const Cloud& labeled, SegmentField field = SegmentField::automatic) {
+std::string error_of(const Cloud& filtered, const Cloud& labeled,
+                     SegmentField field = SegmentField::automatic) {
   try {
     pair(filtered, labeled, field);
   } catch (const IoError& error) {
@@ -126,13 +128,15 @@ TEST(CloudPair, OneDuplicateTooManyIsAStranger) {
   Cloud labeled;
   labeled.points = {{1, 0, 0}, {1, 0, 0}};
   labeled.labels = {1, 1};
-  EXPECT_THAT(error_of(filtered, labeled), HasSubstr("labeled.pcd: 1 of its 2 points are at no point of filtered.pcd"));
+  EXPECT_THAT(error_of(filtered, labeled),
+              HasSubstr("labeled.pcd: 1 of its 2 points are at no point of filtered.pcd"));
 }
 
 TEST(CloudPair, CloudsThatDoNotBelongTogether) {
   Random random(4);
   EXPECT_THAT(error_of(random_cloud(50, random), random_cloud(60, random)),
-              AllOf(HasSubstr("labeled.pcd: 60 of its 60 points"), HasSubstr("filtered.pcd"), HasSubstr("point 0 at")));
+              AllOf(HasSubstr("labeled.pcd: 60 of its 60 points"), HasSubstr("filtered.pcd"),
+                    HasSubstr("point 0 at")));
 }
 
 TEST(CloudPair, PixelsWithoutAHitAreLeftOut) {
@@ -165,7 +169,8 @@ TEST(CloudPair, LabelsAndColoursThatDisagreeAreAnError) {
   filtered.labels = {1, 2};
   Cloud recolored = filtered;  // a program that set colours and passed the ground truth's labels on
   recolored.colors = {0x101010, 0x101010};
-  EXPECT_THAT(error_of(filtered, recolored), AllOf(HasSubstr("labeled.pcd: its labels and its colours"), HasSubstr("--field")));
+  EXPECT_THAT(error_of(filtered, recolored),
+              AllOf(HasSubstr("labeled.pcd: its labels and its colours"), HasSubstr("--field")));
   EXPECT_THAT(pair(filtered, recolored, SegmentField::label).predicted, ElementsAre(1, 2));
   EXPECT_THAT(error_of(filtered, recolored, SegmentField::color), HasSubstr("filtered.pcd: has no colours"));
 }

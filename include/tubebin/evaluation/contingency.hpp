@@ -1,4 +1,5 @@
-/// How the points of a scene fall into ground-truth segments and predicted segments: all that the metrics need.
+/// How the points of a scene fall into ground-truth segments and predicted segments: all that the metrics
+/// need.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,12 @@ struct Contingency {
   std::vector<std::int64_t> unlabeled;   ///< points of each ground-truth segment without a predicted one
   std::optional<SegmentId> bin_id;       ///< the ground-truth segment that is the bin, where that is known
 
-  std::int64_t truth_size(std::size_t row) const { return counts.row(static_cast<Eigen::Index>(row)).sum() + unlabeled[row]; }
-  std::int64_t predicted_size(std::size_t column) const { return counts.col(static_cast<Eigen::Index>(column)).sum(); }
+  std::int64_t truth_size(std::size_t row) const {
+    return counts.row(static_cast<Eigen::Index>(row)).sum() + unlabeled[row];
+  }
+  std::int64_t predicted_size(std::size_t column) const {
+    return counts.col(static_cast<Eigen::Index>(column)).sum();
+  }
   std::int64_t count(std::size_t row, std::size_t column) const {
     return counts(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
   }
@@ -33,8 +38,8 @@ struct Contingency {
   bool is_bin(std::size_t row) const { return bin_id && truth_ids[row] == *bin_id; }
 };
 
-/// Counts the pairs (truth[i], predicted[i]); both have one id a point. Throws IoError where there are so many
-/// different ids that they can't be segments.
+/// Counts the pairs (truth[i], predicted[i]); both have one id a point. Throws IoError where there are so
+/// many different ids that they can't be segments.
 Contingency count_pairs(std::span<const SegmentId> truth, std::span<const SegmentId> predicted,
                         std::optional<SegmentId> bin_id = std::nullopt);
 
