@@ -1,0 +1,284 @@
+#include "tubebin/evaluation/results_folder.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "json_file.hpp"
+#include "parallel.hpp"
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/error.hpp"
+#include "tubebin/scene/scene_json.hpp"
+
+namespace tubebin {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kIndexFormat = "tubebin results 1";
+constexpr const char* kResultFormat = "tubebin result 1";
+constexpr std::int64_t kMaxPoints = std::numeric_limits<std::int32_t>::max();
+constexpr std::int64_t kMaxLabel = std::numeric_limits<std::uint32_t>::max();
+
+/// index.json: what the folder is to hold.
+struct Index {
+  std::string dataset;
+  std::vector<std::string> methods;
+  std::vector<double> ratios;
+  std::vector<std::string> scenes;
+  std::string configuration;
+};
+
+void check_format(const JsonPlace& root, const char* expected) {
+  if (const std::string format = root.at("format").text(); format != expected)
+    root.at("format").fail(fmt::format("expected \"{}\", found \"{}\"", expected, format));
+}
+
+Index read_index(const std::string& folder) {
+  if (!fs::is_directory(folder)) throw_io_error("{}: is no folder", folder);
+  const std::string path = folder + "/index.json";
+  if (!fs::exists(path))
+    throw_io_error("{}: has no index.json, so it is no results folder of model_tubes{}", folder,
+                   fs::exists(folder + "/manifest.jsonl")
+                       ? "; it is a data set, which --predictions can be scored on"
+                       : "");
+  const Json json = read_json_file(path);
+  const JsonPlace root(json, path);
+  check_format(root, kIndexFormat);
+  Index index;
+  index.dataset = (fs::path(folder) / root.at("dataset").text()).lexically_normal().string();
+  for (const JsonPlace& method : root.at("methods").elements()) index.methods.push_back(method.text());
+  for (const JsonPlace& ratio : root.at("ratios").elements()) index.ratios.push_back(ratio.number());
+  for (const JsonPlace& scene : root.at("scenes").elements()) index.scenes.push_back(scene.text());
+  index.configuration = Json{{"tool_version", root.at("tool_version").value()},
+                             {"dataset", root.at("dataset").value()},
+                             {"seed", root.at("seed").value()},
+                             {"options", root.at("options").value()}}
+                            .dump(2);
+  return index;
+}
+
+Contingency read_contingency(const JsonPlace& root) {
+  if (!root.has("contingency"))
+    root.fail("has no contingency: the cloud has neither labels nor known colours, so it cannot be scored");
+  std::vector<std::tuple<SegmentId, SegmentId, std::int64_t>> entries;
+  std::set<SegmentId> truth_ids;
+  std::set<SegmentId> predicted_ids;
+  for (const JsonPlace& entry : root.at("contingency").elements()) {
+    const std::vector<JsonPlace> parts = entry.elements(3);
+    const auto truth = static_cast<SegmentId>(parts[0].integer(0, kMaxLabel));
+    const auto predicted = static_cast<SegmentId>(parts[1].integer(0, kMaxLabel));
+    entries.emplace_back(truth, predicted, parts[2].integer(0, kMaxPoints));
+    truth_ids.insert(truth);
+    if (predicted != kNullId) predicted_ids.insert(predicted);
+  }
+  Contingency contingency;
+  contingency.bin_id = 0;
+  contingency.truth_ids.assign(truth_ids.begin(), truth_ids.end());
+  contingency.predicted_ids.assign(predicted_ids.begin(), predicted_ids.end());
+  contingency.unlabeled.assign(truth_ids.size(), 0);
+  contingency.counts = Counts::Zero(static_cast<Eigen::Index>(truth_ids.size()),
+                                    static_cast<Eigen::Index>(predicted_ids.size()));
+  for (const auto& [truth, predicted, points] : entries) {
+    const auto row = std::distance(truth_ids.begin(), truth_ids.find(truth));
+    if (predicted == kNullId)
+      contingency.unlabeled[static_cast<std::size_t>(row)] += points;
+    else
+      contingency.counts(row, std::distance(predicted_ids.begin(), predicted_ids.find(predicted))) += points;
+  }
+  if (const std::int64_t filtered = root.at("filtered_points").integer(0, kMaxPoints);
+      contingency.total() != filtered)
+    root.at("contingency")
+        .fail(fmt::format("its points sum to {}, but filtered_points is {}", contingency.total(), filtered));
+  return contingency;
+}
+
+Vec3 read_vector(const JsonPlace& place) {
+  const std::vector<JsonPlace> parts = place.elements(3);
+  return {parts[0].number(), parts[1].number(), parts[2].number()};
+}
+
+std::vector<Centerline> read_model(const std::string& path) {
+  const Json json = read_json_file(path);
+  std::vector<Centerline> model;
+  for (const JsonPlace& tube : JsonPlace(json, path).at("tubes").elements()) {
+    Centerline line;
+    for (const JsonPlace& cylinder : tube.at("cylinders").elements())
+      line.push_back({read_vector(cylinder.at("start")), read_vector(cylinder.at("end")),
+                      cylinder.has("bridged") && cylinder.at("bridged").flag()});
+    model.push_back(std::move(line));
+  }
+  return model;
+}
+
+/// A number with as few digits as tell it exactly, as in the runs' folder names.
+std::string run_folder(const std::string& scene, const std::string& method, double ratio) {
+  return fmt::format("{}/{}_{}", scene, method, ratio);
+}
+
+RunScore read_run(const std::string& folder, RunKey key, const SceneTruth* truth) {
+  const std::string path = folder + "/result.json";
+  const Json json = read_json_file(path);
+  const JsonPlace root(json, path);
+  check_format(root, kResultFormat);
+  key.set = root.at("set").text();
+  key.tubes = static_cast<int>(root.at("tubes").integer(0, 1000000));
+  key.case_number = static_cast<int>(root.at("case").integer(0, 1000000000));
+  if (const std::string scene = root.at("scene").text(); scene != key.scene)
+    root.at("scene").fail(fmt::format("is \"{}\", but the folder is of {}", scene, key.scene));
+  const std::string model_path = folder + "/model.json";
+  const bool has_model = truth != nullptr && fs::exists(model_path);
+  RunScore run = score_run(key, read_contingency(root), truth,
+                           has_model ? read_model(model_path) : std::vector<Centerline>{});
+  // Segments without a point in the filtered cloud are tubes of the model all the same.
+  run.scores.predicted_tubes =
+      std::max(run.scores.predicted_tubes, static_cast<int>(root.at("model_tubes").integer(0, kMaxPoints)));
+  if (const std::string times = folder + "/times.json"; fs::exists(times)) {
+    const Json times_json = read_json_file(times);
+    run.seconds = JsonPlace(times_json, times).at("total").number();
+  }
+  return run;
+}
+
+/// Reasons by run folder, as failures.jsonl gives them.
+std::map<std::string, std::string> read_failures(const std::string& folder) {
+  std::map<std::string, std::string> reasons;
+  const std::string path = folder + "/failures.jsonl";
+  if (!fs::exists(path)) return reasons;
+  const std::string text = read_file(path);
+  for (std::size_t start = 0, line = 1; start < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', start), text.size());
+    if (end > start) {
+      const std::string name = fmt::format("{}:{}", path, line);
+      const Json json = parse_json(text.substr(start, end - start), name);
+      const JsonPlace root(json, name);
+      reasons[run_folder(root.at("scene").text(), root.at("method").text(), root.at("ratio").number())] =
+          root.at("error").text();
+    }
+    start = end + 1;
+  }
+  return reasons;
+}
+
+/// A run without a result, with every tube of the scene missed.
+RunScore failed_run(RunKey key, const SceneRecord* scene, const SceneTruth* truth) {
+  Contingency contingency;
+  if (scene != nullptr) {
+    for (std::size_t k = 0; k < scene->tube_pixels.size(); ++k) {
+      contingency.truth_ids.push_back(static_cast<SegmentId>(k + 1));
+      contingency.unlabeled.push_back(static_cast<std::int64_t>(scene->tube_pixels[k]));
+    }
+    key.tubes = static_cast<int>(scene->scene.tubes.size());
+  }
+  contingency.counts.resize(static_cast<Eigen::Index>(contingency.truth_ids.size()), 0);
+  RunScore run = score_run(key, contingency, truth, {});
+  run.failed = true;
+  return run;
+}
+
+/// What one scene adds to the evaluation.
+struct SceneRuns {
+  std::vector<RunScore> runs;
+  std::vector<std::string> missing;
+  std::vector<std::string> failed;
+  bool has_truth = false;
+};
+
+SceneRuns read_scene_runs(const std::string& folder, const Index& index, const std::string& scene,
+                          const std::map<std::string, std::string>& failures) {
+  std::optional<SceneRecord> record;
+  std::optional<SceneTruth> truth;
+  if (const std::string path = index.dataset + "/" + scene + "/scene.json"; fs::exists(path)) {
+    record = read_scene_json(path);
+    truth.emplace(record->scene);
+  }
+  const SceneTruth* known_truth = truth ? &*truth : nullptr;
+
+  SceneRuns result;
+  result.has_truth = truth.has_value();
+  for (const std::string& method : index.methods) {
+    for (const double ratio : index.ratios) {
+      RunKey key = parse_scene_name(scene);
+      key.method = method;
+      key.ratio = ratio;
+      const std::string run = run_folder(scene, method, ratio);
+      if (fs::exists(folder + "/" + run)) {
+        result.runs.push_back(read_run(folder + "/" + run, key, known_truth));
+      } else if (const auto failure = failures.find(run); failure != failures.end()) {
+        result.runs.push_back(failed_run(key, record ? &*record : nullptr, known_truth));
+        result.failed.push_back(fmt::format("{}: {}", key.name(), failure->second));
+      } else {
+        result.missing.push_back(key.name());
+      }
+    }
+  }
+  return result;
+}
+
+void append(Evaluation& evaluation, SceneRuns& scene) {
+  const auto move_all = [](auto& from, auto& to) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  };
+  move_all(scene.runs, evaluation.runs);
+  move_all(scene.missing, evaluation.missing);
+  move_all(scene.failed, evaluation.failed);
+}
+
+}  // namespace
+
+RunKey parse_scene_name(const std::string& name) {
+  RunKey key;
+  key.scene = name;
+  const std::size_t slash = name.find('/');
+  const std::string group = name.substr(0, slash);
+  key.set = group;
+  if (slash == std::string::npos) return key;
+  const std::size_t digits = group.find_last_not_of("0123456789") + 1;
+  const std::string tubes = group.substr(digits);
+  const std::string case_text = name.substr(slash + 1);
+  int tube_count = 0;
+  int case_number = 0;
+  const auto parse = [](const std::string& text, int& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc{} && end == text.data() + text.size();
+  };
+  if (digits == 0 || !parse(tubes, tube_count) || !parse(case_text, case_number)) return key;
+  key.set = group.substr(0, digits);
+  key.tubes = tube_count;
+  key.case_number = case_number;
+  return key;
+}
+
+Evaluation read_results(const std::string& folder, const ResultsOptions& options) {
+  Index index = read_index(folder);
+  if (!options.dataset.empty()) index.dataset = options.dataset;
+  const std::map<std::string, std::string> failures = read_failures(folder);
+  std::vector<SceneRuns> scenes(index.scenes.size());
+  parallel_for(scenes.size(), options.jobs,
+               [&](std::size_t i) { scenes[i] = read_scene_runs(folder, index, index.scenes[i], failures); });
+
+  Evaluation evaluation;
+  evaluation.source = folder;
+  evaluation.configuration = index.configuration;
+  std::size_t without_truth = 0;
+  for (SceneRuns& scene : scenes) {
+    without_truth += scene.has_truth ? 0 : 1;
+    append(evaluation, scene);
+  }
+  if (evaluation.runs.empty())
+    throw_io_error("{}: has none of the {} runs that its index.json names", folder,
+                   evaluation.missing.size());
+  if (without_truth < scenes.size()) evaluation.dataset = index.dataset;
+  if (without_truth > 0)
+    evaluation.notes.push_back(
+        fmt::format("{} of {} scenes have no scene.json in {}: they add nothing to centreline errors and "
+                    "visibility (--dataset DIR "
+                    "says where the data set is)",
+                    without_truth, scenes.size(), index.dataset));
+  return evaluation;
+}
+
+}  // namespace tubebin
