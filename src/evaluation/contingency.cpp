@@ -1,6 +1,7 @@
 #include "tubebin/evaluation/contingency.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <unordered_map>
 
 #include "tubebin/core/error.hpp"
@@ -47,9 +48,7 @@ Indexed index_ids(std::span<const SegmentId> ids) {
 }  // namespace
 
 std::int64_t Contingency::total() const {
-  std::int64_t sum = counts.sum();
-  for (const std::int64_t count : unlabeled) sum += count;
-  return sum;
+  return std::accumulate(unlabeled.begin(), unlabeled.end(), counts.sum());
 }
 
 Contingency count_pairs(std::span<const SegmentId> truth, std::span<const SegmentId> predicted,

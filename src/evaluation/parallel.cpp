@@ -9,16 +9,21 @@
 
 namespace tubebin {
 
-void parallel_for(std::size_t count, int jobs, const std::function<void(std::size_t)>& work) {
+void parallel_for(std::size_t count, int jobs, const std::function<void(std::size_t)>& work,
+                  const OnProgress& on_progress) {
   std::atomic<std::size_t> next = 0;
   std::atomic<bool> stopped = false;
-  std::mutex mutex;
+  std::mutex mutex;  // of what follows
+  std::size_t done = 0;
   std::exception_ptr error;
   std::size_t error_index = count;
   const auto run = [&] {
     for (std::size_t i = next++; i < count && !stopped; i = next++) {
       try {
         work(i);
+        if (!on_progress) continue;
+        const std::lock_guard lock(mutex);
+        on_progress(++done, count);
       } catch (...) {
         const std::lock_guard lock(mutex);
         if (i < error_index) {

@@ -1,7 +1,6 @@
 #include "tubebin/evaluation/results_folder.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -131,8 +130,9 @@ RunScore read_run(const std::string& folder, RunKey key, const SceneTruth* truth
     root.at("scene").fail(fmt::format("is \"{}\", but the folder is of {}", scene, key.scene));
   const std::string model_path = folder + "/model.json";
   const bool has_model = truth != nullptr && fs::exists(model_path);
-  RunScore run = score_run(key, read_contingency(root), truth,
-                           has_model ? read_model(model_path) : std::vector<Centerline>{});
+  const Contingency contingency = read_contingency(root);
+  const std::vector<Centerline> model = has_model ? read_model(model_path) : std::vector<Centerline>{};
+  RunScore run = score_run(key, contingency, match_segments(contingency), truth, model);
   // Segments without a point in the filtered cloud are tubes of the model all the same.
   run.scores.predicted_tubes =
       std::max(run.scores.predicted_tubes, static_cast<int>(root.at("model_tubes").integer(0, kMaxPoints)));
@@ -174,7 +174,7 @@ RunScore failed_run(RunKey key, const SceneRecord* scene, const SceneTruth* trut
     key.tubes = static_cast<int>(scene->scene.tubes.size());
   }
   contingency.counts.resize(static_cast<Eigen::Index>(contingency.truth_ids.size()), 0);
-  RunScore run = score_run(key, contingency, truth, {});
+  RunScore run = score_run(key, contingency, match_segments(contingency), truth, {});
   run.failed = true;
   return run;
 }
@@ -229,36 +229,15 @@ void append(Evaluation& evaluation, SceneRuns& scene) {
 
 }  // namespace
 
-RunKey parse_scene_name(const std::string& name) {
-  RunKey key;
-  key.scene = name;
-  const std::size_t slash = name.find('/');
-  const std::string group = name.substr(0, slash);
-  key.set = group;
-  if (slash == std::string::npos) return key;
-  const std::size_t digits = group.find_last_not_of("0123456789") + 1;
-  const std::string tubes = group.substr(digits);
-  const std::string case_text = name.substr(slash + 1);
-  int tube_count = 0;
-  int case_number = 0;
-  const auto parse = [](const std::string& text, int& value) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc{} && end == text.data() + text.size();
-  };
-  if (digits == 0 || !parse(tubes, tube_count) || !parse(case_text, case_number)) return key;
-  key.set = group.substr(0, digits);
-  key.tubes = tube_count;
-  key.case_number = case_number;
-  return key;
-}
-
 Evaluation read_results(const std::string& folder, const ResultsOptions& options) {
   Index index = read_index(folder);
   if (!options.dataset.empty()) index.dataset = options.dataset;
   const std::map<std::string, std::string> failures = read_failures(folder);
   std::vector<SceneRuns> scenes(index.scenes.size());
-  parallel_for(scenes.size(), options.jobs,
-               [&](std::size_t i) { scenes[i] = read_scene_runs(folder, index, index.scenes[i], failures); });
+  parallel_for(
+      scenes.size(), options.jobs,
+      [&](std::size_t i) { scenes[i] = read_scene_runs(folder, index, index.scenes[i], failures); },
+      options.on_progress);
 
   Evaluation evaluation;
   evaluation.source = folder;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 namespace tubebin {
 namespace {
@@ -59,13 +60,35 @@ const char* visibility_class_name(int visibility_class) {
 
 std::string RunKey::name() const { return fmt::format("{} {} {}", scene, method, ratio); }
 
+RunKey parse_scene_name(const std::string& name) {
+  RunKey key;
+  key.scene = name;
+  const std::size_t slash = name.find('/');
+  const std::string group = name.substr(0, slash);
+  key.set = group;
+  if (slash == std::string::npos) return key;
+  const std::size_t digits = group.find_last_not_of("0123456789") + 1;
+  const std::string tubes = group.substr(digits);
+  const std::string case_text = name.substr(slash + 1);
+  int tube_count = 0;
+  int case_number = 0;
+  const auto parse = [](const std::string& text, int& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc{} && end == text.data() + text.size();
+  };
+  if (digits == 0 || !parse(tubes, tube_count) || !parse(case_text, case_number)) return key;
+  key.set = group.substr(0, digits);
+  key.tubes = tube_count;
+  key.case_number = case_number;
+  return key;
+}
+
 SceneTruth::SceneTruth(const Scene& scene) : samples(sample_centerlines(scene)) {
   for (const PlacedTube& tube : scene.tubes) centerlines.push_back(centerline(tube));
 }
 
-RunScore score_run(const RunKey& key, const Contingency& contingency, const SceneTruth* truth,
-                   const std::vector<Centerline>& model) {
-  const Matching matching = match_segments(contingency);
+RunScore score_run(const RunKey& key, const Contingency& contingency, const Matching& matching,
+                   const SceneTruth* truth, const std::vector<Centerline>& model) {
   RunScore run;
   run.key = key;
   run.micro_recall = matching.micro_recall();

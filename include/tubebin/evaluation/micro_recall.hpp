@@ -18,8 +18,13 @@ struct Matching {
   }
 };
 
-/// Every ground-truth segment takes part, the bin's too where the filter left points of it; the null segment
-/// is never matched.
-Matching match_segments(const Contingency& contingency);
+/// What becomes of the bin's points, where the contingency tells them apart.
+enum class BinPoints {
+  counted,  ///< in a filtered cloud: the filter left them, so they count, and their segment takes part
+  left_out  ///< in an unfiltered cloud: they are neither points to label nor a segment to match
+};
+
+/// The null segment is never matched.
+Matching match_segments(const Contingency& contingency, BinPoints bin_points = BinPoints::counted);
 
 }  // namespace tubebin

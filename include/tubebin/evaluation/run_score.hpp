@@ -27,6 +27,10 @@ struct RunKey {
   std::string name() const;
 };
 
+/// The set, number of tubes and case that a scene's name tells: "A10/007" is set A, ten tubes, case 7. Where
+/// it has another form, the set is its first folder and the other two are 0.
+RunKey parse_scene_name(const std::string& name);
+
 /// What is known of a scene's tubes beyond the labels of its points; tube k is at [k - 1].
 struct SceneTruth {
   explicit SceneTruth(const Scene& scene);
@@ -45,9 +49,9 @@ struct RunScore {
   std::optional<double> seconds;  ///< modelling time
 };
 
-/// `truth` is null where the scene is not known, `model` empty where there are no centrelines; the model tube
-/// of predicted id k is model[k - 1]. Ground-truth ids are labels.
-RunScore score_run(const RunKey& key, const Contingency& contingency, const SceneTruth* truth,
-                   const std::vector<Centerline>& model);
+/// `matching` is of `contingency`, whose ground-truth ids are labels. `truth` is null where the scene is not
+/// known, `model` empty where there are no centrelines; the model tube of predicted id k is model[k - 1].
+RunScore score_run(const RunKey& key, const Contingency& contingency, const Matching& matching,
+                   const SceneTruth* truth, const std::vector<Centerline>& model);
 
 }  // namespace tubebin
