@@ -98,6 +98,8 @@ PairedIds pair_clouds(const NamedCloud& filtered, const NamedCloud& labeled, Seg
   const std::vector<SegmentId>& truth = ids_of(filtered.cloud, truth_field);
 
   PairedIds pairs;
+  pairs.truth_is_color = truth_field == SegmentField::color;
+  pairs.predicted_is_color = predicted_field == SegmentField::color;
   if (truth_field == SegmentField::label) pairs.bin_id = 0;
   pairs.truth.reserve(truth.size());
   pairs.predicted.reserve(truth.size());

@@ -106,6 +106,7 @@ Evaluation score_predictions(const std::string& dataset, const std::string& fold
   Evaluation evaluation;
   evaluation.source = folder;
   evaluation.dataset = dataset;
+  evaluation.missing_counts_as_zero = true;
   evaluation.runs.resize(scenes.size());
   const std::string method = fs::path(folder).lexically_normal().filename().string();
   parallel_for(

@@ -84,22 +84,11 @@ Table grid(std::string title, const std::vector<GroupSummary>& groups, const std
   return table;
 }
 
-const std::vector<std::string> kMeasureHeaders = {"recall",
-                                                  "precision",
-                                                  "IoU",
-                                                  "PQ",
-                                                  "AP50",
-                                                  "AP",
-                                                  "ARI",
-                                                  "detected",
-                                                  "over",
-                                                  "under",
-                                                  "missed",
-                                                  "noise",
-                                                  "count error",
-                                                  "count bias",
-                                                  "model to tube mm",
-                                                  "tube to model mm"};
+const std::vector<std::string> kMeasureHeaders = {
+    "tube recall",      "tube precision", "tube IoU",         "panoptic quality", "AP at 0.5",
+    "AP at 0.5:0.95",   "Rand index",     "detected",         "over-segmented",   "under-segmented",
+    "missed",           "noise",          "tube count error", "tube count bias",  "model to tube, mm",
+    "tube to model, mm"};
 
 void append_measures(const PooledScores& pooled, std::vector<Cell>& row) {
   for (const double value :
@@ -127,10 +116,6 @@ std::map<std::pair<std::string, std::string>, std::vector<const RunScore*>> runs
   return runs;
 }
 
-std::string segment_name(SegmentId id, bool is_color) {
-  return is_color ? fmt::format("#{:06x}", id) : fmt::format("{}", id);
-}
-
 }  // namespace
 
 FigureConditions figure_conditions(const std::vector<GroupSummary>& groups) {
@@ -146,8 +131,8 @@ std::vector<std::string> sets_of(const std::vector<GroupSummary>& groups) {
 }
 
 Table overview_table(const Evaluation& evaluation) {
-  Table table{"Overview: all runs of a method and set together",
-              with_measures({"method", "set", "runs", "failed", "micro-recall", "seconds"}),
+  Table table{"Overview: all runs of a method on a set together",
+              with_measures({"method", "set", "runs", "failed", "micro-recall", "seconds a run"}),
               {},
               ""};
   for (const auto& [key, runs] : runs_by_method_and_set(evaluation)) {
@@ -161,7 +146,7 @@ Table overview_table(const Evaluation& evaluation) {
     append_measures(group.pooled, row);
     table.rows.push_back(std::move(row));
   }
-  table.note = "In brackets: 95 % bootstrap intervals. Every measure is defined in docs/metrics.md.";
+  table.note = "In brackets: 95 % bootstrap intervals. docs/metrics.md defines every measure.";
   return table;
 }
 
@@ -239,14 +224,14 @@ Table visibility_table(const Evaluation& evaluation) {
 }
 
 std::vector<Table> result_tables(const Evaluation& evaluation, const std::vector<GroupSummary>& groups) {
-  std::vector<Table> tables = {overview_table(evaluation)};
+  std::vector<Table> tables = {transpose(overview_table(evaluation), 2)};
   for (const std::string& method : methods_of(groups)) {
     tables.push_back(figure_8_table(groups, method));
     tables.push_back(figure_9_table(groups, method));
     for (const std::string& set : sets_of(groups)) tables.push_back(recall_grid(groups, method, set));
     for (const std::string& set : sets_of(groups)) tables.push_back(time_grid(groups, method, set));
   }
-  tables.push_back(visibility_table(evaluation));
+  tables.push_back(transpose(visibility_table(evaluation), 2));
   std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });
   return tables;
 }
@@ -311,36 +296,6 @@ Table group_table(const std::vector<GroupSummary>& groups) {
     else
       row.insert(row.end(), 4, Cell());
     table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-Table matching_table(const Contingency& contingency, const Matching& matching, bool truth_is_color,
-                     bool predicted_is_color) {
-  Table table{"Matching of ground truth and labels",
-              {"ground truth", "points", "label", "points of label", "correct", "recall", "precision", "IoU"},
-              {},
-              ""};
-  for (std::size_t row = 0; row < contingency.truth_ids.size(); ++row) {
-    const std::string bin = contingency.is_bin(row) ? " (bin)" : "";
-    std::vector<Cell> cells = {segment_name(contingency.truth_ids[row], truth_is_color) + bin,
-                               integer_cell(contingency.truth_size(row))};
-    if (const int matched = matching.column_of_row[row]; matched != kUnmatched) {
-      const auto column = static_cast<std::size_t>(matched);
-      const auto correct = static_cast<double>(contingency.count(row, column));
-      const auto truth_size = static_cast<double>(contingency.truth_size(row));
-      const auto predicted_size = static_cast<double>(contingency.predicted_size(column));
-      cells.insert(
-          cells.end(),
-          {segment_name(contingency.predicted_ids[column], predicted_is_color),
-           integer_cell(contingency.predicted_size(column)), integer_cell(contingency.count(row, column)),
-           number_cell(correct / truth_size, 4), number_cell(correct / predicted_size, 4),
-           number_cell(correct / (truth_size + predicted_size - correct), 4)});
-    } else {
-      cells.insert(cells.end(), {"-", Cell(), integer_cell(0), number_cell(0.0, 4), number_cell(0.0, 4),
-                                 number_cell(0.0, 4)});
-    }
-    table.rows.push_back(std::move(cells));
   }
   return table;
 }

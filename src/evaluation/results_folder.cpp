@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "json_file.hpp"
 #include "parallel.hpp"
+#include "scene/json_reader.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/scene/scene_json.hpp"
@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kIndexFormat = "tubebin results 1";
 constexpr const char* kResultFormat = "tubebin result 1";
-constexpr std::int64_t kMaxPoints = std::numeric_limits<std::int32_t>::max();
-constexpr std::int64_t kMaxLabel = std::numeric_limits<std::uint32_t>::max();
+constexpr int kMaxPoints = std::numeric_limits<int>::max();
+constexpr std::uint64_t kMaxLabel = std::numeric_limits<std::uint32_t>::max();
 
 /// index.json: what the folder is to hold.
 struct Index {
@@ -32,8 +32,7 @@ struct Index {
 };
 
 void check_format(const JsonPlace& root, const char* expected) {
-  if (const std::string format = root.at("format").text(); format != expected)
-    root.at("format").fail(fmt::format("expected \"{}\", found \"{}\"", expected, format));
+  if (root.at("format").text() != expected) root.at("format").fail(fmt::format("\"{}\"", expected));
 }
 
 Index read_index(const std::string& folder) {
@@ -44,7 +43,7 @@ Index read_index(const std::string& folder) {
                    fs::exists(folder + "/manifest.jsonl")
                        ? "; it is a data set, which --predictions can be scored on"
                        : "");
-  const Json json = read_json_file(path);
+  const nlohmann::json json = parse_json(read_file(path), path);
   const JsonPlace root(json, path);
   check_format(root, kIndexFormat);
   Index index;
@@ -52,25 +51,29 @@ Index read_index(const std::string& folder) {
   for (const JsonPlace& method : root.at("methods").elements()) index.methods.push_back(method.text());
   for (const JsonPlace& ratio : root.at("ratios").elements()) index.ratios.push_back(ratio.number());
   for (const JsonPlace& scene : root.at("scenes").elements()) index.scenes.push_back(scene.text());
-  index.configuration = Json{{"tool_version", root.at("tool_version").value()},
-                             {"dataset", root.at("dataset").value()},
-                             {"seed", root.at("seed").value()},
-                             {"options", root.at("options").value()}}
-                            .dump(2);
+  for (const char* key : {"tool_version", "dataset", "seed", "options"}) root.at(key);
+  index.configuration = nlohmann::ordered_json{
+      {"tool_version", json["tool_version"]},
+      {"dataset", json["dataset"]},
+      {"seed", json["seed"]},
+      {"options",
+       json["options"]}}.dump(2);
   return index;
 }
 
-Contingency read_contingency(const JsonPlace& root) {
+Contingency read_contingency(const JsonPlace& root, const std::string& path) {
   if (!root.has("contingency"))
-    root.fail("has no contingency: the cloud has neither labels nor known colours, so it cannot be scored");
+    throw_io_error(
+        "{}: /contingency: missing; the cloud has neither labels nor known colours, so it cannot be scored",
+        path);
   std::vector<std::tuple<SegmentId, SegmentId, std::int64_t>> entries;
   std::set<SegmentId> truth_ids;
   std::set<SegmentId> predicted_ids;
   for (const JsonPlace& entry : root.at("contingency").elements()) {
     const std::vector<JsonPlace> parts = entry.elements(3);
-    const auto truth = static_cast<SegmentId>(parts[0].integer(0, kMaxLabel));
-    const auto predicted = static_cast<SegmentId>(parts[1].integer(0, kMaxLabel));
-    entries.emplace_back(truth, predicted, parts[2].integer(0, kMaxPoints));
+    const auto truth = static_cast<SegmentId>(parts[0].whole(0, kMaxLabel));
+    const auto predicted = static_cast<SegmentId>(parts[1].whole(0, kMaxLabel));
+    entries.emplace_back(truth, predicted, static_cast<std::int64_t>(parts[2].whole(0, kMaxPoints)));
     truth_ids.insert(truth);
     if (predicted != kNullId) predicted_ids.insert(predicted);
   }
@@ -88,25 +91,20 @@ Contingency read_contingency(const JsonPlace& root) {
     else
       contingency.counts(row, std::distance(predicted_ids.begin(), predicted_ids.find(predicted))) += points;
   }
-  if (const std::int64_t filtered = root.at("filtered_points").integer(0, kMaxPoints);
-      contingency.total() != filtered)
-    root.at("contingency")
-        .fail(fmt::format("its points sum to {}, but filtered_points is {}", contingency.total(), filtered));
+  const auto filtered_points = static_cast<std::int64_t>(root.at("filtered_points").whole(0, kMaxPoints));
+  if (contingency.total() != filtered_points)
+    root.at("filtered_points")
+        .fail(fmt::format("{}, which the contingency's points sum to", contingency.total()));
   return contingency;
 }
 
-Vec3 read_vector(const JsonPlace& place) {
-  const std::vector<JsonPlace> parts = place.elements(3);
-  return {parts[0].number(), parts[1].number(), parts[2].number()};
-}
-
 std::vector<Centerline> read_model(const std::string& path) {
-  const Json json = read_json_file(path);
+  const nlohmann::json json = parse_json(read_file(path), path);
   std::vector<Centerline> model;
   for (const JsonPlace& tube : JsonPlace(json, path).at("tubes").elements()) {
     Centerline line;
     for (const JsonPlace& cylinder : tube.at("cylinders").elements())
-      line.push_back({read_vector(cylinder.at("start")), read_vector(cylinder.at("end")),
+      line.push_back({cylinder.at("start").vector(), cylinder.at("end").vector(),
                       cylinder.has("bridged") && cylinder.at("bridged").flag()});
     model.push_back(std::move(line));
   }
@@ -120,24 +118,24 @@ std::string run_folder(const std::string& scene, const std::string& method, doub
 
 RunScore read_run(const std::string& folder, RunKey key, const SceneTruth* truth) {
   const std::string path = folder + "/result.json";
-  const Json json = read_json_file(path);
+  const nlohmann::json json = parse_json(read_file(path), path);
   const JsonPlace root(json, path);
   check_format(root, kResultFormat);
   key.set = root.at("set").text();
-  key.tubes = static_cast<int>(root.at("tubes").integer(0, 1000000));
-  key.case_number = static_cast<int>(root.at("case").integer(0, 1000000000));
-  if (const std::string scene = root.at("scene").text(); scene != key.scene)
-    root.at("scene").fail(fmt::format("is \"{}\", but the folder is of {}", scene, key.scene));
+  key.tubes = root.at("tubes").integer({0, 1000000});
+  key.case_number = root.at("case").integer({0, 1000000000});
+  if (root.at("scene").text() != key.scene)
+    root.at("scene").fail(fmt::format("\"{}\", the folder's scene", key.scene));
   const std::string model_path = folder + "/model.json";
   const bool has_model = truth != nullptr && fs::exists(model_path);
-  const Contingency contingency = read_contingency(root);
+  const Contingency contingency = read_contingency(root, path);
   const std::vector<Centerline> model = has_model ? read_model(model_path) : std::vector<Centerline>{};
   RunScore run = score_run(key, contingency, match_segments(contingency), truth, model);
   // Segments without a point in the filtered cloud are tubes of the model all the same.
   run.scores.predicted_tubes =
-      std::max(run.scores.predicted_tubes, static_cast<int>(root.at("model_tubes").integer(0, kMaxPoints)));
+      std::max(run.scores.predicted_tubes, root.at("model_tubes").integer({0, kMaxPoints}));
   if (const std::string times = folder + "/times.json"; fs::exists(times)) {
-    const Json times_json = read_json_file(times);
+    const nlohmann::json times_json = parse_json(read_file(times), times);
     run.seconds = JsonPlace(times_json, times).at("total").number();
   }
   return run;
@@ -153,7 +151,7 @@ std::map<std::string, std::string> read_failures(const std::string& folder) {
     const std::size_t end = std::min(text.find('\n', start), text.size());
     if (end > start) {
       const std::string name = fmt::format("{}:{}", path, line);
-      const Json json = parse_json(text.substr(start, end - start), name);
+      const nlohmann::json json = parse_json(text.substr(start, end - start), name);
       const JsonPlace root(json, name);
       reasons[run_folder(root.at("scene").text(), root.at("method").text(), root.at("ratio").number())] =
           root.at("error").text();

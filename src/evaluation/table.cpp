@@ -57,6 +57,22 @@ Cell percent_cell(double share, int decimals) {
   return {fmt::format("{:.{}f} %", 100.0 * share, decimals), share};
 }
 
+Table transpose(const Table& table, std::size_t name_columns) {
+  Table result{table.title, {""}, {}, table.note};
+  for (const auto& row : table.rows) {
+    std::string name;
+    for (std::size_t i = 0; i < name_columns; ++i)
+      name += (i > 0 && !row[i].text.empty() ? " " : "") + row[i].text;
+    result.headers.push_back(std::move(name));
+  }
+  for (std::size_t i = name_columns; i < table.headers.size(); ++i) {
+    std::vector<Cell> row = {table.headers[i]};
+    for (const auto& cells : table.rows) row.push_back(i < cells.size() ? cells[i] : Cell());
+    result.rows.push_back(std::move(row));
+  }
+  return result;
+}
+
 std::string format_text(const Table& table) {
   const std::vector<bool> numeric = numeric_columns(table);
   std::vector<std::size_t> widths;

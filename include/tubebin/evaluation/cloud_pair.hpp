@@ -24,7 +24,9 @@ struct PairedIds {
   std::vector<SegmentId>
       predicted;  ///< label or colour; kNullId also where the labelled cloud lacks the point
   std::optional<SegmentId> bin_id;  ///< of `truth`; colours alone do not tell which is the bin's
-  std::size_t missing = 0;          ///< points of the filtered cloud that the labelled cloud lacks
+  bool truth_is_color = false;
+  bool predicted_is_color = false;
+  std::size_t missing = 0;  ///< points of the filtered cloud that the labelled cloud lacks
   std::size_t unannotated =
       0;  ///< points of the filtered cloud in the null colour: no ground truth, left out
 };

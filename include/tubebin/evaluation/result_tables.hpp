@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tubebin/evaluation/cloud_pair.hpp"
 #include "tubebin/evaluation/evaluation.hpp"
 #include "tubebin/evaluation/summary.hpp"
 #include "tubebin/evaluation/table.hpp"
@@ -45,7 +46,9 @@ Table group_table(const std::vector<GroupSummary>& groups);
 std::string format_results(const Evaluation& evaluation, TableFormat format);
 
 /// A pair of clouds: one row a ground-truth segment with its match. Colours are written as #rrggbb.
-Table matching_table(const Contingency& contingency, const Matching& matching, bool truth_is_color,
-                     bool predicted_is_color);
+Table matching_table(const Contingency& contingency, const Matching& matching, const PairedIds& pairs);
+
+/// The pair's matching and micro-recall in the format; `csv` is the matching alone.
+std::string format_pair(const PairedIds& pairs, TableFormat format);
 
 }  // namespace tubebin

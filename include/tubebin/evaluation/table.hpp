@@ -32,6 +32,10 @@ Cell number_cell(double value, int decimals);
 /// A share of one in per cent.
 Cell percent_cell(double share, int decimals = 1);
 
+/// The table with its rows as columns: the first `name_columns` cells of a row together become the column's
+/// header.
+Table transpose(const Table& table, std::size_t name_columns);
+
 /// Aligned columns for a terminal, numbers to the right.
 std::string format_text(const Table& table);
 std::string format_markdown(const Table& table);
