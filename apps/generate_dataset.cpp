@@ -48,6 +48,13 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("-j,--jobs", arguments.jobs, "Worker processes")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("--shard", arguments.shard, "Make only part I of N, counted from 1")->type_name("I/N");
   app.add_flag("--preview", arguments.preview, "Also render pictures of each scene");
+  app.add_flag_callback(
+      "--config-reference",
+      [] {
+        fmt::print("{}", document_config());
+        throw CLI::Success();
+      },
+      "Print every key of a configuration as Markdown, and exit");
   app.add_flag("-q,--quiet", arguments.quiet, "No progress, only errors and the final table");
 }
 

@@ -51,7 +51,8 @@ int parse_count(const std::string& text, const std::string& whole) {
 const char* tool_version() { return TUBEBIN_VERSION; }
 
 void describe(Fields& fields, DatasetConfig& config) {
-  fields.text("tool_version", config.tool_version, "version that made the data set; leave it out when writing a file");
+  fields.text("tool_version", config.tool_version,
+              "version that made the data set, refused by any other; leave it out of a file of your own");
   fields.text("set", config.set, "name of the set; scenes are called <set><tubes>/<case>, as A10/007");
   fields.seed("seed", config.seed, "of all randomness; another seed makes other scenes");
   fields.integers("tubes", config.tubes, kTubeCountLimits, "numbers of tubes in the bin, each with its own scenes");
@@ -97,6 +98,17 @@ DatasetConfig load_config(const std::string& path) {
 std::string format_config(const DatasetConfig& config) {
   DatasetConfig fields = config;
   return write_yaml(fields_of(fields));
+}
+
+std::string document_config() {
+  DatasetConfig defaults;
+  return "# Configuration of generate_dataset\n\n"
+         "A configuration is a YAML file. A key that is missing keeps its default; an unknown key, a wrong type or an\n"
+         "impossible value is an error that names the place in the file and what would be valid. A top-level key\n"
+         "`include: other.yaml` (a path relative to the file) takes all values of that file first. A dot in a name\n"
+         "below stands for nesting: `tube.radius` is the key `radius` in the mapping `tube`.\n\n"
+         "`generate_dataset --config-reference` prints this page.\n\n" +
+         document_fields(fields_of(defaults));
 }
 
 std::vector<std::string> differences(const DatasetConfig& there, const DatasetConfig& here) {

@@ -47,6 +47,9 @@ void check(const DatasetConfig& config, const KeyPlaces& places);
 /// The configuration as a file that load_config reads back to the same values.
 std::string format_config(const DatasetConfig& config);
 
+/// docs/configuration.md: every key with its default, unit, valid values and effect.
+std::string document_config();
+
 /// Keys whose values decide a scene's bytes and differ: "tube.radius: 0.0125 there, 0.01 here".
 std::vector<std::string> differences(const DatasetConfig& there, const DatasetConfig& here);
 
