@@ -6,6 +6,7 @@
 
 #include "tubebin/dataset/generate_dataset.hpp"
 #include "tubebin/dataset/timing_table.hpp"
+#include "tubebin/dataset/verify_dataset.hpp"
 
 namespace {
 
@@ -19,10 +20,12 @@ Examples:
       three scenes each of 1, 5, 10, 11 and 12 tubes, with pictures
   generate_dataset config/set_a.yaml --output part_2 --shard 2/4
       the second of four parts, which four machines make
+  generate_dataset --verify dataset_a
+      check every scene of a data set; with --repair, make damaged ones anew
 
 Run the same command again after an interruption: complete scenes are kept.
 Exit codes: 0 done; 1 input or output failed; 2 wrong usage or configuration; 3 finished, but some scenes could not
-be done (each is named); 130 and 143 interrupted by Ctrl-C or SIGTERM.)";
+be done or are damaged (each is named); 130 and 143 interrupted by Ctrl-C or SIGTERM.)";
 
 struct Arguments {
   std::string config;
@@ -34,13 +37,15 @@ struct Arguments {
   std::string shard = "1/1";
   bool preview = false;
   bool quiet = false;
+  std::string verify;
+  bool repair = false;
 
   Progress::Style progress() const { return quiet ? Progress::Style::none : Progress::Style::automatic; }
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("CONFIG", arguments.config, "Configuration file (YAML, see docs/configuration.md)");
-  app.add_option("-o,--output", arguments.output, "Folder of the data set")->type_name("DIR");
+  auto* config = app.add_option("CONFIG", arguments.config, "Configuration file (YAML, see docs/configuration.md)");
+  auto* output = app.add_option("-o,--output", arguments.output, "Folder of the data set")->type_name("DIR");
   app.add_option("--tubes", arguments.tubes, "Numbers of tubes, instead of the configuration's")->type_name("1,5,10-15");
   app.add_option("--cases", arguments.cases, "Scenes for each number of tubes, instead of the configuration's")
       ->check(CLI::Range(1, 1000000));
@@ -56,6 +61,17 @@ void add_options(CLI::App& app, Arguments& arguments) {
       },
       "Print every key of a configuration as Markdown, and exit");
   app.add_flag("-q,--quiet", arguments.quiet, "No progress, only errors and the final table");
+  auto* verify =
+      app.add_option("--verify", arguments.verify, "Check a data set instead of making one")->type_name("DIR");
+  app.add_flag("--repair", arguments.repair, "Make damaged scenes anew")->needs(verify);
+  verify->excludes(config)->excludes(output);
+}
+
+/// For checks of values that no place in a file can be named for.
+KeyPlaces whole_file(const std::string& name) {
+  KeyPlaces places;
+  places.set("", name);
+  return places;
 }
 
 DatasetConfig resolve_config(const Arguments& arguments) {
@@ -66,7 +82,7 @@ DatasetConfig resolve_config(const Arguments& arguments) {
   if (arguments.cases) config.cases = *arguments.cases;
   if (arguments.seed) config.seed = *arguments.seed;
   if (arguments.preview) config.output.preview = true;
-  check(config, {});
+  check(config, whole_file("command line"));
   return config;
 }
 
@@ -80,13 +96,9 @@ void print_summary(const GenerationReport& report, std::size_t scene_count) {
              rejects);
 }
 
-int generate(const Arguments& arguments) {
-  const Shard shard = parse_shard(arguments.shard);
-  const DatasetConfig config = resolve_config(arguments);
-  DatasetFolder folder(arguments.output, config);
-  const std::vector<SceneId> scenes = list_scenes(config, shard);
+/// Makes the scenes and says how it went.
+int make_scenes(DatasetFolder& folder, const std::vector<SceneId>& scenes, const Arguments& arguments) {
   const GenerationReport report = generate_dataset(folder, scenes, arguments.jobs, arguments.progress());
-
   if (!arguments.quiet) print_summary(report, scenes.size());
   for (const std::string& failed : report.failed) fmt::print(stderr, "{}\n", failed);
   if (report.signal != 0) {
@@ -98,7 +110,33 @@ int generate(const Arguments& arguments) {
   return static_cast<int>(report.failed.empty() ? ExitCode::done : ExitCode::incomplete);
 }
 
-int run(const Arguments& arguments) { return generate(arguments); }
+int generate(const Arguments& arguments) {
+  const Shard shard = parse_shard(arguments.shard);
+  const DatasetConfig config = resolve_config(arguments);
+  DatasetFolder folder(arguments.output, config);
+  return make_scenes(folder, list_scenes(config, shard), arguments);
+}
+
+int repair(const VerificationReport& report, const Arguments& arguments) {
+  const DatasetConfig config = read_dataset_config(arguments.verify);
+  check(config, whole_file(arguments.verify + "/config.yaml"));
+  DatasetFolder folder(arguments.verify, config);
+  forget_damage(folder, report);
+  return make_scenes(folder, report.damaged, arguments);
+}
+
+int verify(const Arguments& arguments) {
+  const VerificationReport report = verify_dataset(arguments.verify, arguments.jobs, arguments.progress());
+  for (const std::string& problem : report.problems) fmt::print("{}\n", problem);
+  fmt::print("{}: {} scenes checked, {} damaged, {} not generated yet\n", arguments.verify, report.checked,
+             report.damaged.size(), report.missing);
+  std::fflush(stdout);
+  if (report.signal != 0) return 128 + report.signal;
+  if (report.sound()) return static_cast<int>(ExitCode::done);
+  return arguments.repair ? repair(report, arguments) : static_cast<int>(ExitCode::incomplete);
+}
+
+int run(const Arguments& arguments) { return arguments.verify.empty() ? generate(arguments) : verify(arguments); }
 
 }  // namespace
 

@@ -109,4 +109,13 @@ void Manifest::append(const ManifestRecord& record) {
   records_[record.id] = record;
 }
 
+void Manifest::rewrite_without(const std::set<std::string>& ids) {
+  std::erase_if(records_, [&](const auto& entry) { return ids.contains(entry.first); });
+  std::string text;
+  for (const auto& [id, record] : records_) text += format_manifest_record(record) + '\n';
+  write_file_atomically(path_, text);
+  complete_bytes_ = text.size();
+  damaged_lines_.clear();
+}
+
 }  // namespace tubebin

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,6 +51,9 @@ class Manifest {
 
   /// Appends a line; after an error (IoError) the file is as it was before.
   void append(const ManifestRecord& record);
+
+  /// Writes the file anew without these scenes and without damaged lines.
+  void rewrite_without(const std::set<std::string>& ids);
 
  private:
   std::string path_;

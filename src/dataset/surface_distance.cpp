@@ -1,0 +1,47 @@
+#include "surface_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tubebin {
+namespace {
+
+/// Of a convex body from how far a point is beyond each of its bounds (negative: short of it).
+template <typename Vector>
+double distance_from_bounds(const Vector& beyond) {
+  const double outside = beyond.cwiseMax(0.0).norm();
+  return outside > 0.0 ? outside : std::abs(beyond.maxCoeff());
+}
+
+}  // namespace
+
+BodySurface::BodySurface(const PlacedTube& placed) : radius_(placed.tube.radius) {
+  for (const Cylinder& cylinder : placed.tube.cylinders) {
+    const Vec3 a = placed.node_in_world(cylinder.node_a);
+    const Vec3 b = placed.node_in_world(cylinder.node_b);
+    cylinders_.push_back({.center = (a + b) / 2.0, .axis = (b - a).normalized(), .half_length = (b - a).norm() / 2.0});
+  }
+  const std::vector<int> degrees = placed.tube.node_degrees();
+  for (std::size_t node = 0; node < degrees.size(); ++node)
+    if (degrees[node] != 1) sphere_centers_.push_back(placed.node_in_world(static_cast<int>(node)));
+}
+
+double BodySurface::distance(const Vec3& point) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const CappedCylinder& cylinder : cylinders_) {
+    const Vec3 from_center = point - cylinder.center;
+    const double along = from_center.dot(cylinder.axis);
+    const double radial = (from_center - along * cylinder.axis).norm();
+    nearest = std::min(nearest, distance_from_bounds(
+                                    Eigen::Vector2d(radial - radius_, std::abs(along) - cylinder.half_length)));
+  }
+  for (const Vec3& center : sphere_centers_)
+    nearest = std::min(nearest, std::abs((point - center).norm() - radius_));
+  for (const Box& box : boxes_)
+    nearest = std::min(nearest,
+                       distance_from_bounds(Vec3((point - box.center()).cwiseAbs() - box.sizes() / 2.0)));
+  return nearest;
+}
+
+}  // namespace tubebin

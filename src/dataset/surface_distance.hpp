@@ -1,0 +1,32 @@
+/// How far a point is from the surface that its label names. Kept apart from the scanner's own formulas, which it
+/// checks.
+#pragma once
+
+#include <vector>
+
+#include "tubebin/scene/scene.hpp"
+
+namespace tubebin {
+
+/// The surfaces of one body: a tube's cylinders and joint spheres, or the bin's boxes.
+class BodySurface {
+ public:
+  explicit BodySurface(const PlacedTube& tube);
+  explicit BodySurface(const Bin& bin) : boxes_(bin_boxes(bin)) {}
+
+  /// Metres to the nearest of the body's surfaces, from whichever side.
+  double distance(const Vec3& point) const;
+
+ private:
+  struct CappedCylinder {
+    Vec3 center;
+    Vec3 axis;  ///< unit
+    double half_length = 0.0;
+  };
+  double radius_ = 0.0;
+  std::vector<CappedCylinder> cylinders_;
+  std::vector<Vec3> sphere_centers_;
+  std::vector<Box> boxes_;
+};
+
+}  // namespace tubebin

@@ -1,0 +1,82 @@
+#include "tubebin/dataset/verify_dataset.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <sstream>
+
+#include "tubebin/dataset/worker_pool.hpp"
+
+namespace tubebin {
+namespace {
+
+AttemptResult check_scene(const std::string& folder, const DatasetConfig& config, const SceneId& id,
+                          const ManifestRecord& record) {
+  return {true, fmt::format("{}", fmt::join(verify_scene(folder, config, id, record), "\n")), ""};
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+void add_damaged(VerificationReport& report, const SceneId& id, const std::vector<std::string>& problems) {
+  report.damaged.push_back(id);
+  for (const std::string& problem : problems) report.problems.push_back(id.name() + ": " + problem);
+}
+
+void add_outcome(VerificationReport& report, const SceneId& id, const JobOutcome& outcome) {
+  ++report.checked;
+  if (!outcome.succeeded)
+    add_damaged(report, id, {fmt::format("could not be checked: {}", outcome.failed.back().detail)});
+  else if (!outcome.text.empty())
+    add_damaged(report, id, lines_of(outcome.text));
+}
+
+}  // namespace
+
+VerificationReport verify_dataset(const std::string& folder, int jobs, Progress::Style progress_style) {
+  const FolderLock lock(folder, FolderLock::Kind::shared);
+  const DatasetConfig config = read_dataset_config(folder);
+  const Manifest manifest(folder);
+  VerificationReport report;
+  report.problems = manifest.damaged_lines();
+
+  const std::vector<SceneId> scenes = list_scenes(config);
+  std::vector<std::size_t> recorded;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (manifest.find(scenes[i].name()) != nullptr)
+      recorded.push_back(i);
+    else if (std::filesystem::exists(folder + "/" + scenes[i].name()))
+      add_damaged(report, scenes[i], {"is not in the manifest"});
+    else
+      ++report.missing;
+  }
+
+  Progress progress(recorded.size(), "scenes", progress_style);
+  const PoolEvents events{.on_finished =
+                              [&](const JobOutcome& outcome) {
+                                add_outcome(report, scenes[outcome.job], outcome);
+                                progress.count_done();
+                              },
+                          .on_tick = [&] { progress.show(); }};
+  const auto work = [&](std::size_t job, int) {
+    return check_scene(folder, config, scenes[job], *manifest.find(scenes[job].name()));
+  };
+  const PoolOptions options{
+      .workers = jobs, .attempts_max = 1, .attempt_time_limit = config.attempt_time_limit};
+  report.signal = run_jobs(recorded, options, work, events).signal;
+  std::sort(report.problems.begin(), report.problems.end());
+  std::sort(report.damaged.begin(), report.damaged.end());
+  return report;
+}
+
+void forget_damage(DatasetFolder& folder, const VerificationReport& report) {
+  std::set<std::string> names;
+  for (const SceneId& id : report.damaged) names.insert(id.name());
+  folder.manifest().rewrite_without(names);
+}
+
+}  // namespace tubebin

@@ -1,0 +1,174 @@
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "surface_distance.hpp"
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/dataset/verify_dataset.hpp"
+#include "tubebin/scene/scene_json.hpp"
+#include "tubebin/scene/tubes_txt.hpp"
+
+namespace tubebin {
+namespace {
+
+using Problems = std::vector<std::string>;
+
+// Exactness of a noise-free scan: 0.005 mm.
+constexpr double kSurfaceTolerance = 5e-6;
+// tubes.txt is text; its distances round-trip to a nanometre, its directions a little less.
+constexpr double kTextTolerance = 1e-8;
+// The position of a contact is a point between the two surfaces, and a gap so wide still counts as touching.
+constexpr double kContactTolerance = 2e-4;
+
+void check_files(const std::string& path, const ManifestRecord& record, Problems& problems) {
+  for (const auto& [name, expected] : record.files) {
+    const std::string file = path + "/" + name;
+    if (!std::filesystem::exists(file)) {
+      problems.push_back(name + " is missing");
+      continue;
+    }
+    const FileRecord found = record_bytes(read_file(file));
+    if (found.bytes != expected.bytes)
+      problems.push_back(fmt::format("{} has {} bytes, recorded are {}", name, found.bytes, expected.bytes));
+    else if (found.xxh128 != expected.xxh128)
+      problems.push_back(fmt::format("{} has hash {}, recorded is {}", name, found.xxh128, expected.xxh128));
+  }
+}
+
+void check_identity(const SceneRecord& scene, const DatasetConfig& config, const SceneId& id,
+                    const ManifestRecord& record, Problems& problems) {
+  if (scene.id != id.name()) problems.push_back(fmt::format("scene.json calls itself {}", scene.id));
+  if (scene.seed != record.seed)
+    problems.push_back(fmt::format("scene.json has seed {}, recorded is {}", scene.seed, record.seed));
+  if (scene.scene.tubes.size() != static_cast<std::size_t>(id.tubes))
+    problems.push_back(fmt::format("scene.json has {} tubes", scene.scene.tubes.size()));
+  if (scene.scene.bin != config.bin) problems.push_back("scene.json has another bin than config.yaml");
+}
+
+void check_colors(const SceneRecord& scene, Problems& problems) {
+  const std::set<Color> different(scene.colors.begin(), scene.colors.end());
+  if (scene.colors.size() != scene.scene.tubes.size() + 1 || different.size() != scene.colors.size() ||
+      different.contains(kNullColor))
+    problems.push_back(fmt::format("scene.json has {} different colours for {} tubes and the bin", different.size(),
+                                   scene.scene.tubes.size()));
+}
+
+void check_tubes_txt(const std::string& path, const SceneRecord& scene, Problems& problems) {
+  const std::vector<PlacedTube> read = read_tubes_txt(path);
+  bool same = read.size() == scene.scene.tubes.size();
+  for (std::size_t k = 0; same && k < read.size(); ++k) {
+    const PlacedTube& tube = scene.scene.tubes[k];
+    same = read[k].tube.nodes.size() == tube.tube.nodes.size();
+    for (int node = 0; same && node < static_cast<int>(tube.tube.nodes.size()); ++node)
+      same = (read[k].node_in_world(node) - tube.node_in_world(node)).norm() < kTextTolerance;
+  }
+  if (!same) problems.push_back("tubes.txt has other tubes than scene.json");
+}
+
+std::vector<BodySurface> surfaces_of(const Scene& scene) {
+  std::vector<BodySurface> surfaces = {BodySurface(scene.bin)};
+  for (const PlacedTube& tube : scene.tubes) surfaces.emplace_back(tube);
+  return surfaces;
+}
+
+void check_cloud_layout(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
+  const bool organized = scene.scene.scanner.region != ScanRegion::tubes;
+  if (organized && (cloud.width != static_cast<std::uint32_t>(scene.window.width) ||
+                    cloud.height != static_cast<std::uint32_t>(scene.window.height)))
+    problems.push_back(fmt::format("the cloud has {} x {} points, the window of scene.json {} x {}", cloud.width,
+                                   cloud.height, scene.window.width, scene.window.height));
+  if (cloud.colors.size() != cloud.size() || cloud.labels.size() != cloud.size())
+    problems.push_back("the cloud has no colour or no label for each point");
+}
+
+void check_points(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
+  const std::vector<BodySurface> surfaces = surfaces_of(scene.scene);
+  std::vector<std::size_t> pixels(surfaces.size(), 0);
+  std::size_t unknown = 0, miscolored = 0, off_surface = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Label label = cloud.labels[i];
+    if (!is_finite(cloud.points[i])) {
+      miscolored += label != 0 || cloud.colors[i] != kNullColor;
+    } else if (label >= surfaces.size()) {
+      ++unknown;
+    } else {
+      ++pixels[label];
+      miscolored += cloud.colors[i] != scene.colors[label];
+      off_surface += !(surfaces[label].distance(cloud.points[i].cast<double>()) <= kSurfaceTolerance);
+    }
+  }
+  if (unknown > 0) problems.push_back(fmt::format("{} points have labels of no tube", unknown));
+  if (miscolored > 0) problems.push_back(fmt::format("{} points have another colour than their label", miscolored));
+  if (off_surface > 0)
+    problems.push_back(fmt::format("{} points lie more than {} mm off the surface of their label", off_surface,
+                                   kSurfaceTolerance * 1e3));
+  pixels.erase(pixels.begin());
+  if (pixels != scene.tube_pixels)
+    problems.push_back(fmt::format("the cloud shows [{}] pixels of the tubes, scene.json says [{}]",
+                                   fmt::join(pixels, ", "), fmt::join(scene.tube_pixels, ", ")));
+}
+
+void check_contacts(const SceneRecord& scene, const DatasetConfig& config, Problems& problems) {
+  const std::vector<BodySurface> surfaces = surfaces_of(scene.scene);
+  for (const Contact& contact : scene.contacts) {
+    const auto off = [&](Label label) {
+      return label >= surfaces.size() ||
+             surfaces[label].distance(contact.position) > std::abs(contact.depth) + kContactTolerance;
+    };
+    if (off(contact.label_a) || off(contact.label_b))
+      problems.push_back(fmt::format("the contact of {} and {} is not where both are", contact.label_a, contact.label_b));
+    if (contact.depth > config.physics.penetration_max)
+      problems.push_back(fmt::format("{} and {} interpenetrate by {:.3f} mm, more than the {:.3f} mm allowed",
+                                     contact.label_a, contact.label_b, contact.depth * 1e3,
+                                     config.physics.penetration_max * 1e3));
+  }
+}
+
+/// Tubes from which no chain of contacts leads to the bin.
+void check_held(const SceneRecord& scene, Problems& problems) {
+  std::set<Label> held = {0};
+  for (std::size_t before = 0; before != held.size();) {
+    before = held.size();
+    for (const Contact& contact : scene.contacts) {
+      if (held.contains(contact.label_a)) held.insert(contact.label_b);
+      if (held.contains(contact.label_b)) held.insert(contact.label_a);
+    }
+  }
+  for (Label k = 1; k <= scene.scene.tubes.size(); ++k)
+    if (!held.contains(k)) problems.push_back(fmt::format("tube {} floats: no contacts lead from it to the bin", k));
+}
+
+void check_content(const std::string& path, const DatasetConfig& config, const SceneId& id,
+                   const ManifestRecord& record, Problems& problems) {
+  const SceneRecord scene = read_scene_json(path + "/scene.json");
+  check_identity(scene, config, id, record, problems);
+  check_colors(scene, problems);
+  check_tubes_txt(path + "/tubes.txt", scene, problems);
+  check_contacts(scene, config, problems);
+  check_held(scene, problems);
+  if (record.physics.largest_drift > config.physics.drift_max)
+    problems.push_back(fmt::format("a tube moved by {:.3f} mm in the check at the end", record.physics.largest_drift * 1e3));
+  const Cloud cloud = read_cloud(path + "/cloud" + extension(config.output.format));
+  check_cloud_layout(cloud, scene, problems);
+  if (problems.empty()) check_points(cloud, scene, problems);
+}
+
+}  // namespace
+
+std::vector<std::string> verify_scene(const std::string& folder, const DatasetConfig& config, const SceneId& id,
+                                      const ManifestRecord& record) {
+  Problems problems;
+  const std::string path = folder + "/" + id.name();
+  try {
+    check_files(path, record, problems);
+    // Files that aren't as they were written make no sense to look into.
+    if (problems.empty()) check_content(path, config, id, record, problems);
+  } catch (const IoError& error) {
+    problems.emplace_back(error.what());
+  }
+  return problems;
+}
+
+}  // namespace tubebin
