@@ -1,0 +1,36 @@
+// Triangles of tubes and boxes.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "tubebin/scene/scene.hpp"
+
+namespace tubebin {
+
+struct Vertex {
+  Eigen::Vector3f position;
+  Eigen::Vector3f normal;
+  float dome_light = 1.0F;  ///< what part of the sky's light arrives; lit pictures alone compute it
+};
+
+/// Three indices a triangle.
+struct Mesh {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;
+};
+
+/// How finely surfaces are divided. Flat and straight ones need no division for their shape, but to carry light.
+struct Fineness {
+  int facets = 64;                                            ///< around a tube
+  double cell = std::numeric_limits<double>::infinity();      ///< metres, largest step along flat and straight surfaces
+};
+
+/// Cylinders with flat caps and spheres at the joints, around `origin` in world axes.
+Mesh tube_mesh(const PlacedTube& tube, const Vec3& origin, const Fineness& fineness);
+
+/// A box's faces, around `origin` in world axes.
+void add_box(const Box& box, const Vec3& origin, const Fineness& fineness, Mesh& mesh);
+
+}  // namespace tubebin

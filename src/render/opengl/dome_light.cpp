@@ -1,0 +1,66 @@
+#include "render/opengl/dome_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tubebin {
+namespace {
+
+constexpr int kLights = 32;
+constexpr int kMapPixels = 192;
+
+/// Over the upper half of the sphere, evenly, along a golden spiral.
+std::vector<Eigen::Vector3f> sky_directions() {
+  std::vector<Eigen::Vector3f> directions;
+  const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  for (int i = 0; i < kLights; ++i) {
+    const double up = 1.0 - (i + 0.5) / kLights;
+    const double across = std::sqrt(1.0 - up * up);
+    directions.push_back(
+        Vec3(across * std::cos(golden_angle * i), across * std::sin(golden_angle * i), up).cast<float>());
+  }
+  return directions;
+}
+
+}  // namespace
+
+DomeLight::DomeLight(const Ball& ball, const std::function<void()>& draw_casters) : scene_radius_(ball.radius) {
+  ShadowMap map(kMapPixels);
+  for (const Eigen::Vector3f& to_light : sky_directions()) {
+    const Eigen::Matrix4f from_world = map_from_world(to_light, ball);
+    map.draw(from_world, draw_casters);
+    lights_.push_back({to_light, from_world, map.read()});
+  }
+}
+
+void DomeLight::shine_on(Mesh& mesh) const {
+  float upward = 0.0F;
+  for (const Light& light : lights_) upward += light.to_light.z();
+  for (Vertex& vertex : mesh.vertices) {
+    float sum = 0.0F;
+    for (const Light& light : lights_) {
+      const float facing = vertex.normal.dot(light.to_light);
+      if (facing > 0.0F) sum += facing * seen_from(light, vertex);
+    }
+    vertex.dome_light = sum / upward;
+  }
+}
+
+/// 0 or 1 at each of the four pixels around, weighted by nearness.
+float DomeLight::seen_from(const Light& light, const Vertex& vertex) const {
+  const float pixel_size = 2.0F * scene_radius_ / kMapPixels;
+  const Eigen::Vector3f lifted = vertex.position + pixel_size * vertex.normal;
+  const Eigen::Vector3f place = (light.map_from_world * lifted.homogeneous()).head<3>();
+  const float x = std::clamp(place.x() * kMapPixels - 0.5F, 0.0F, kMapPixels - 1.001F);
+  const float y = std::clamp(place.y() * kMapPixels - 0.5F, 0.0F, kMapPixels - 1.001F);
+  const auto column = static_cast<std::size_t>(x), row = static_cast<std::size_t>(y);
+  const float depth = std::min(place.z(), 1.0F);  // nothing stands in the way of what lies beyond the ball
+  const auto free = [&](std::size_t c, std::size_t r) {
+    return depth <= light.depths[r * kMapPixels + c] ? 1.0F : 0.0F;
+  };
+  const float right = x - static_cast<float>(column), above = y - static_cast<float>(row);
+  return (1.0F - above) * ((1.0F - right) * free(column, row) + right * free(column + 1, row)) +
+         above * ((1.0F - right) * free(column, row + 1) + right * free(column + 1, row + 1));
+}
+
+}  // namespace tubebin

@@ -1,0 +1,239 @@
+#include <algorithm>
+#include <cmath>
+
+#include "render/opengl/dome_light.hpp"
+#include "render/opengl/draw.hpp"
+#include "render/opengl/lit_shaders.hpp"
+#include "render/opengl/multisample_target.hpp"
+#include "render/opengl/shader_program.hpp"
+#include "render/opengl/views.hpp"
+#include "tubebin/cloud/label_colors.hpp"
+
+namespace tubebin {
+namespace {
+
+constexpr Fineness kFineness = {.facets = 24, .cell = 0.015};
+constexpr Fineness kCasterFineness = {.facets = 10};
+constexpr int kSunMapPixels = 2048;
+constexpr double kElevation = radians(52.0);
+constexpr double kAzimuth = radians(-78.0);     // of the eye, from +x towards +y
+constexpr double kFieldOfView = radians(26.0);  // vertical
+constexpr double kMargin = 1.06;                // of the scene's size, left free around it
+constexpr double kGlassCosine = 0.3;            // walls that face the eye more than this are glass
+const Eigen::Vector3f kToSun = Eigen::Vector3f(-0.30F, -0.35F, 1.0F).normalized();
+
+/// A look from `eye` along -backward.
+struct View {
+  Vec3 eye;
+  Vec3 right, up, backward;
+};
+
+/// What a picture must show: the bin and the tubes.
+Eigen::AlignedBox3d scene_bounds(const Scene& scene) {
+  Eigen::AlignedBox3d bounds;
+  for (const Box& box : bin_boxes(scene.bin)) bounds.extend(box);
+  for (const PlacedTube& placed : scene.tubes)
+    for (int node = 0; node < static_cast<int>(placed.tube.nodes.size()); ++node)
+      for (const double side : {-1.0, 1.0})
+        bounds.extend(placed.node_in_world(node) + Vec3::Constant(side * placed.tube.radius));
+  return bounds;
+}
+
+/// The nearest eye, in the fixed direction, that has all corners of the bounds in the picture.
+View view_of(const Eigen::AlignedBox3d& bounds, double aspect) {
+  View view;
+  view.backward = {std::cos(kElevation) * std::cos(kAzimuth), std::cos(kElevation) * std::sin(kAzimuth),
+                   std::sin(kElevation)};
+  view.right = Vec3::UnitZ().cross(view.backward).normalized();
+  view.up = view.backward.cross(view.right);
+  const double tan_up = std::tan(kFieldOfView / 2.0) / kMargin;
+  const double tan_right = tan_up * aspect;
+  // Each corner keeps the eye at least so far away; along each image axis the two extreme corners settle the place.
+  Vec3 extreme_low = Vec3::Constant(std::numeric_limits<double>::max());
+  Vec3 extreme_high = -extreme_low;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+    const double along = corner.dot(view.backward);
+    const Vec3 low(corner.dot(view.right) - tan_right * along, corner.dot(view.up) - tan_up * along, 0.0);
+    const Vec3 high(corner.dot(view.right) + tan_right * along, corner.dot(view.up) + tan_up * along, 0.0);
+    extreme_low = extreme_low.cwiseMin(low);
+    extreme_high = extreme_high.cwiseMax(high);
+  }
+  const double far_enough = std::max((extreme_high.x() - extreme_low.x()) / (2.0 * tan_right),
+                                     (extreme_high.y() - extreme_low.y()) / (2.0 * tan_up));
+  view.eye = view.right * (extreme_low.x() + extreme_high.x()) / 2.0 +
+             view.up * (extreme_low.y() + extreme_high.y()) / 2.0 + view.backward * far_enough;
+  return view;
+}
+
+Eigen::Vector3f linear_from_srgb(Color color) {
+  const auto channel = [&](int shift) {
+    return std::pow(static_cast<float>(color >> shift & 0xFF) / 255.0F, 2.2F);
+  };
+  return {channel(16), channel(8), channel(0)};
+}
+
+Ball ball_around(const Eigen::AlignedBox3d& bounds) {
+  return {bounds.center().cast<float>(), static_cast<float>(bounds.diagonal().norm() / 2.0)};
+}
+
+enum class Wall { solid, glass };
+
+/// The walls between the eye and the bin's inside, which are glass, or the others and the floor.
+Mesh bin_walls(const Bin& bin, Wall kind, const View& view, const Fineness& fineness) {
+  Mesh walls;
+  for (const Box& box : bin_boxes(bin)) {
+    const bool upright = box.max().z() > 0.0;
+    const Vec3 outward = Vec3(box.center().x(), box.center().y(), 0.0).normalized();
+    const bool hides = upright && outward.dot(view.backward) > kGlassCosine;
+    if (hides == (kind == Wall::glass)) add_box(box, Vec3::Zero(), fineness, walls);
+  }
+  return walls;
+}
+
+/// What throws shadows, coarsely.
+class Casters {
+ public:
+  Casters(const Scene& scene, const View& view) {
+    meshes_.push_back(bin_walls(scene.bin, Wall::solid, view, kCasterFineness));
+    for (const PlacedTube& tube : scene.tubes) meshes_.push_back(tube_mesh(tube, Vec3::Zero(), kCasterFineness));
+  }
+
+  void draw_all() const {
+    for (const Mesh& mesh : meshes_) draw(mesh);
+  }
+
+ private:
+  std::vector<Mesh> meshes_;
+};
+
+class LitView {
+ public:
+  LitView(const Scene& scene, const View& view, const Eigen::AlignedBox3d& bounds, const OffscreenContext& context)
+      : scene_(scene),
+        view_(view),
+        bounds_(bounds),
+        context_(context),
+        casters_(scene, view),
+        dome_(ball_around(bounds), [&] { casters_.draw_all(); }),
+        sun_map_(kSunMapPixels),
+        shading_(kLitVertexShader, kLitFragmentShader) {
+    const Eigen::Matrix4f sun_map_from_world = map_from_world(kToSun, ball_around(bounds));
+    sun_map_.draw(sun_map_from_world, [&] { casters_.draw_all(); });
+    shading_.use();
+    shading_.set("sun_map_from_world", sun_map_from_world);
+    shading_.set("shadow_margin", 2.0F * ball_around(bounds).radius / kSunMapPixels);
+    shading_.set("sun_map", 0);
+    shading_.set("to_sun", kToSun);
+    shading_.set("eye", Eigen::Vector3f(view_.eye.cast<float>()));
+    glUseProgram(0);
+  }
+
+  void draw_all() {
+    draw_background();
+    set_camera();
+    shading_.use();
+    sun_map_.bind();
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    draw_table();
+    const std::vector<Color> colors = label_colors(scene_.tubes.size());
+    draw_lit(bin_walls(scene_.bin, Wall::solid, view_, kFineness), colors[0], {.alpha = 1.0F, .highlight = 0.02F});
+    for (std::size_t i = 0; i < scene_.tubes.size(); ++i)
+      draw_lit(tube_mesh(scene_.tubes[i], Vec3::Zero(), kFineness), colors[i + 1], {.alpha = 1.0F, .highlight = 0.10F});
+    glEnable(GL_CULL_FACE);
+    glDepthMask(GL_FALSE);
+    draw_lit(bin_walls(scene_.bin, Wall::glass, view_, kFineness), colors[0], {.alpha = 0.22F, .highlight = 0.0F});
+    glDepthMask(GL_TRUE);
+    glDisable(GL_CULL_FACE);
+  }
+
+ private:
+  struct Material {
+    float alpha = 1.0F;
+    float highlight = 0.0F;
+    float fade_begin = 1e6F;  ///< metres from the world's z axis
+    float fade_end = 2e6F;
+  };
+
+  void draw_lit(Mesh mesh, Color color, const Material& material) {
+    dome_.shine_on(mesh);
+    shading_.set("albedo", linear_from_srgb(color));
+    shading_.set("alpha", material.alpha);
+    shading_.set("highlight", material.highlight);
+    shading_.set("fade_begin", material.fade_begin);
+    shading_.set("fade_end", material.fade_end);
+    draw(mesh);
+  }
+
+  void draw_background() {
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glMatrixMode(GL_PROJECTION);
+    glLoadIdentity();
+    glMatrixMode(GL_MODELVIEW);
+    glLoadIdentity();
+    glDisable(GL_DEPTH_TEST);
+    glBegin(GL_QUADS);
+    glColor3f(0.93F, 0.94F, 0.96F);
+    glVertex2f(-1.0F, -1.0F);
+    glVertex2f(1.0F, -1.0F);
+    glColor3f(0.97F, 0.975F, 0.985F);
+    glVertex2f(1.0F, 1.0F);
+    glVertex2f(-1.0F, 1.0F);
+    glEnd();
+    glEnable(GL_DEPTH_TEST);
+  }
+
+  void set_camera() {
+    const double radius = bounds_.diagonal().norm();
+    const double distance = (view_.eye - bounds_.center()).norm();
+    const double near = std::max(distance - radius, distance / 100.0);
+    const double top = near * std::tan(kFieldOfView / 2.0);
+    const double right = top * context_.width() / context_.height();
+    glMatrixMode(GL_PROJECTION);
+    glLoadIdentity();
+    glFrustum(-right, right, -top, top, near, distance + 4.0 * radius);
+    Eigen::Matrix4d eye_from_world = Eigen::Matrix4d::Identity();
+    eye_from_world.row(0).head<3>() = view_.right.transpose();
+    eye_from_world.row(1).head<3>() = view_.up.transpose();
+    eye_from_world.row(2).head<3>() = view_.backward.transpose();
+    eye_from_world.col(3).head<3>() = -eye_from_world.topLeftCorner<3, 3>() * view_.eye;
+    glMatrixMode(GL_MODELVIEW);
+    glLoadMatrixd(eye_from_world.data());
+  }
+
+  /// A bright table that fades into the background.
+  void draw_table() {
+    const double reach = bounds_.diagonal().norm() * 1.5;
+    const double top = bounds_.min().z();
+    Mesh table;
+    add_box(Box(Vec3(-reach, -reach, top - 0.01), Vec3(reach, reach, top)), Vec3::Zero(),
+            {.facets = 4, .cell = reach / 60.0}, table);
+    draw_lit(std::move(table), 0xD5D9DF,
+             {.fade_begin = static_cast<float>(reach * 0.3), .fade_end = static_cast<float>(reach * 0.7)});
+  }
+
+  const Scene& scene_;
+  View view_;
+  Eigen::AlignedBox3d bounds_;
+  const OffscreenContext& context_;
+  Casters casters_;
+  DomeLight dome_;
+  ShadowMap sun_map_;
+  ShaderProgram shading_;
+};
+
+}  // namespace
+
+Image draw_lit_view(const Scene& scene, int width, int height) {
+  const Eigen::AlignedBox3d bounds = scene_bounds(scene);
+  const View view = view_of(bounds, static_cast<double>(width) / height);
+  const OffscreenContext context(width, height);
+  LitView lit_view(scene, view, bounds, context);
+  const MultisampleTarget target(context);
+  lit_view.draw_all();
+  target.resolve();
+  return context.read();
+}
+
+}  // namespace tubebin
