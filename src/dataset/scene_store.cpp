@@ -65,17 +65,29 @@ class UnfinishedFolder {
   fs::path path_;
 };
 
-void write_synced(const std::string& path, std::string_view bytes) {
-  const FileDescriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-  const auto fail = [&] { throw_io_error("{}: cannot be written: {}", path, std::strerror(errno)); };
-  if (file.get() < 0) fail();
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
-    if (written < 0 && errno != EINTR) fail();
-    if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
+/// A new file whose bytes are on their way to the disk, and there after sync().
+class NewFile {
+ public:
+  NewFile(std::string path, std::string_view bytes)
+      : path_(std::move(path)), file_(open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+    if (file_.get() < 0) fail();
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(file_.get(), bytes.data(), bytes.size());
+      if (written < 0 && errno != EINTR) fail();
+      if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    sync_file_range(file_.get(), 0, 0, SYNC_FILE_RANGE_WRITE);  // only begins; what fails shows in sync()
   }
-  if (fsync(file.get()) != 0) fail();
-}
+  void sync() const {
+    if (fsync(file_.get()) != 0) fail();
+  }
+
+ private:
+  [[noreturn]] void fail() const { throw_io_error("{}: cannot be written: {}", path_, std::strerror(errno)); }
+
+  std::string path_;
+  FileDescriptor file_;
+};
 
 bool same_point(const Point& a, const Point& b) {
   for (int i = 0; i < 3; ++i)
@@ -102,14 +114,14 @@ std::map<std::string, FileRecord> SceneStore::write(const std::string& scene_nam
   files[cloud_name()] = format_cloud(content.cloud, options_.format);
   files["scene.json"] = format_scene_json(content.record);
   files["tubes.txt"] = format_tubes_txt(content.record.scene.tubes);
-  check_reads_back(files[cloud_name()], content.cloud, path(scene_name) + "/" + cloud_name());
 
   const UnfinishedFolder folder(path(scene_name));
+  std::vector<NewFile> written;
   std::map<std::string, FileRecord> records;
-  for (const auto& [name, bytes] : files) {
-    write_synced(folder.file(name), bytes);
-    records[name] = record_bytes(bytes);
-  }
+  for (const auto& [name, bytes] : files) written.emplace_back(folder.file(name), bytes);
+  for (const auto& [name, bytes] : files) records[name] = record_bytes(bytes);
+  check_reads_back(files[cloud_name()], content.cloud, path(scene_name) + "/" + cloud_name());
+  for (const NewFile& file : written) file.sync();
   folder.rename_to_final();
   return records;
 } catch (const fs::filesystem_error& error) {
