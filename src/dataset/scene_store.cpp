@@ -98,6 +98,7 @@ bool same_point(const Point& a, const Point& b) {
 /// Compressed files have been written before that nothing could read.
 void check_reads_back(const std::string& bytes, const Cloud& cloud, const std::string& path) {
   const Cloud read = parse_cloud(bytes, path);
+  if (read.points.empty() && cloud.points.empty()) return;  // files have no unique form of no points
   if (read.width != cloud.width || read.height != cloud.height || read.colors != cloud.colors ||
       read.labels != cloud.labels ||
       !std::equal(read.points.begin(), read.points.end(), cloud.points.begin(), cloud.points.end(), same_point))

@@ -74,8 +74,9 @@ std::vector<BodySurface> surfaces_of(const Scene& scene) {
 }
 
 void check_cloud_layout(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
-  const bool organized = scene.scene.scanner.region != ScanRegion::tubes;
-  if (organized && (cloud.width != static_cast<std::uint32_t>(scene.window.width) ||
+  const bool is_organized =
+      scene.scene.scanner.region != ScanRegion::tubes && scene.window.width * scene.window.height > 0;
+  if (is_organized && (cloud.width != static_cast<std::uint32_t>(scene.window.width) ||
                     cloud.height != static_cast<std::uint32_t>(scene.window.height)))
     problems.push_back(fmt::format("the cloud has {} x {} points, the window of scene.json {} x {}", cloud.width,
                                    cloud.height, scene.window.width, scene.window.height));
