@@ -4,6 +4,8 @@
 #include <charconv>
 #include <set>
 
+#include "tubebin/render/preview.hpp"
+
 namespace tubebin {
 namespace {
 
@@ -33,6 +35,11 @@ void check_version(const DatasetConfig& config, const KeyPlaces& places) {
     places.fail("tool_version", fmt::format("'{}' made this file and '{}' is running, whose scenes may differ; "
                                             "remove the key to use the configuration with this version",
                                             config.tool_version, tool_version()));
+}
+
+void check_preview(const DatasetConfig& config, const KeyPlaces& places) {
+  if (config.output.preview && !can_render())
+    places.fail("output.preview", "'true' is not possible: this build cannot draw, since OSMesa was missing");
 }
 
 int parse_count(const std::string& text, const std::string& whole) {
@@ -71,7 +78,7 @@ void describe(Fields& fields, DatasetConfig& config) {
   fields.group("output", "what is written for each scene", [&](Fields& inner) {
     inner.choice("format", config.output.format, {"pcd_binary", "pcd_compressed", "pcd_ascii", "ply_binary"},
                  "file format of the cloud");
-    inner.flag("preview", config.output.preview, "also render preview.png and the ground-truth image labels.png");
+    inner.flag("preview", config.output.preview, "also render preview.png and ground_truth.png, the colours in the scanner's view");
   });
 }
 
@@ -83,6 +90,7 @@ void check(const DatasetConfig& config, const KeyPlaces& places) {
   check_version(config, places);
   check_set_name(config, places);
   check_tubes_once(config, places);
+  check_preview(config, places);
   check(config.tube, places, "tube");
   check(config.physics, places, "physics");
   check(config.scanner, places, "scanner");

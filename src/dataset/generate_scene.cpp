@@ -3,10 +3,19 @@
 #include <chrono>
 
 #include "tubebin/cloud/label_colors.hpp"
+#include "tubebin/render/preview.hpp"
 #include "tubebin/scan/scanner.hpp"
 
 namespace tubebin {
 namespace {
+
+constexpr int kPreviewWidth = 1280;
+constexpr int kPreviewHeight = 960;
+
+std::string png(const Image& image) {
+  const std::vector<std::uint8_t> bytes = encode_png(image);
+  return {bytes.begin(), bytes.end()};
+}
 
 /// Adds the time since the last call to the named stage.
 class StageClock {
@@ -59,6 +68,12 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
                            .tube_pixels = std::move(scanned.tube_pixels),
                            .contacts = std::move(drop.contacts)};
   result.content.cloud = std::move(scanned.cloud);
+
+  if (config.output.preview) {
+    result.content.images["preview.png"] = png(render_preview(scene, kPreviewWidth, kPreviewHeight));
+    result.content.images["ground_truth.png"] = png(render_labels(scene, scanned.window));
+    clock.end_stage("preview");
+  }
   return result;
 }
 

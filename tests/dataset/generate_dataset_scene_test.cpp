@@ -4,6 +4,7 @@
 #include "dataset/program.hpp"
 #include "tubebin/dataset/manifest.hpp"
 #include "tubebin/dataset/verify_dataset.hpp"
+#include "tubebin/render/preview.hpp"
 #include "tubebin/scene/scene_json.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 
@@ -155,6 +156,22 @@ TEST_F(GenerateDataset, WritesEveryFormatSoThatItVerifies) {
       const ProgramResult verified = run_generate_dataset({"--verify", data});
       EXPECT_EQ(verified.exit_code, 0) << format << " " << region << ": " << verified.out;
     }
+}
+
+TEST_F(GenerateDataset, DrawsPreviewsThatNeitherChangeNorDependOnTheRest) {
+  if (!can_render()) GTEST_SKIP() << "this build cannot draw";
+  ASSERT_EQ(generate(data_, {"--cases", "2"}).exit_code, 0);
+  ASSERT_EQ(generate(folder_ / "one", {"--cases", "2", "--preview", "--jobs", "1"}).exit_code, 0);
+  ASSERT_EQ(generate(folder_ / "two", {"--cases", "2", "--preview", "--jobs", "2"}).exit_code, 0);
+  auto with_pictures = scene_files(folder_ / "one");
+  EXPECT_EQ(scene_files(folder_ / "two"), with_pictures);
+  for (const std::string scene : {"Q1/001", "Q1/002", "Q3/001", "Q3/002"})
+    for (const std::string picture : {"/preview.png", "/ground_truth.png"}) {
+      const auto png = with_pictures.extract(scene + picture);
+      ASSERT_FALSE(png.empty()) << scene << picture;
+      EXPECT_TRUE(png.mapped().starts_with("\x89PNG")) << scene << picture;
+    }
+  EXPECT_EQ(with_pictures, scene_files(data_));
 }
 
 TEST_F(GenerateDataset, DoesUnusualRequests) {
