@@ -209,8 +209,10 @@ class LitView {
     Mesh table;
     add_box(Box(Vec3(-reach, -reach, top - 0.01), Vec3(reach, reach, top)), Vec3::Zero(),
             {.facets = 4, .cell = reach / 60.0}, table);
+    glEnable(GL_CULL_FACE);  // its dark lower side would show where the upper one fades
     draw_lit(std::move(table), 0xD5D9DF,
              {.fade_begin = static_cast<float>(reach * 0.3), .fade_end = static_cast<float>(reach * 0.7)});
+    glDisable(GL_CULL_FACE);
   }
 
   const Scene& scene_;
