@@ -20,7 +20,7 @@ void main() {
 )";
 
 /// Diffuse light of the sun with its shadow and of the dome, a little light from everywhere, a soft highlight; colours
-/// are summed linearly and encoded for sRGB at the end. A surface fades out from `fade_begin` to `fade_end`.
+/// are summed linearly and encoded at the end (gamma 2). A surface fades out from `fade_begin` to `fade_end`.
 constexpr const char* kLitFragmentShader = R"(#version 120
 uniform vec3 albedo;
 uniform float alpha;
@@ -39,8 +39,9 @@ void main() {
   float sun = max(0.0, dot(n, to_sun)) * shadow2D(sun_map, min(place_in_sun_map, vec3(1.0))).r;
   vec3 light = sun * vec3(0.72, 0.69, 0.64) + dome * vec3(0.60, 0.63, 0.68) + vec3(0.12);
   vec3 halfway = normalize(to_sun + normalize(eye - position));
-  float gloss = highlight * pow(max(0.0, dot(n, halfway)), 32.0) * min(1.0, 2.0 * sun);
-  vec3 color = pow(albedo * light + vec3(gloss), vec3(1.0 / 2.2));
+  float gloss = max(0.0, dot(n, halfway));
+  gloss *= gloss; gloss *= gloss; gloss *= gloss; gloss *= gloss; gloss *= gloss;
+  vec3 color = sqrt(albedo * light + vec3(highlight * gloss * min(1.0, 2.0 * sun)));
   gl_FragColor = vec4(color, alpha * (1.0 - smoothstep(fade_begin, fade_end, length(position.xy))));
 }
 )";

@@ -14,7 +14,7 @@ namespace {
 
 constexpr Fineness kFineness = {.facets = 24, .cell = 0.015};
 constexpr Fineness kCasterFineness = {.facets = 10};
-constexpr int kSunMapPixels = 2048;
+constexpr int kSunMapPixels = 1536;
 constexpr double kElevation = radians(52.0);
 constexpr double kAzimuth = radians(-78.0);     // of the eye, from +x towards +y
 constexpr double kFieldOfView = radians(26.0);  // vertical
@@ -66,9 +66,11 @@ View view_of(const Eigen::AlignedBox3d& bounds, double aspect) {
   return view;
 }
 
-Eigen::Vector3f linear_from_srgb(Color color) {
+/// The inverse of the shader's encoding.
+Eigen::Vector3f linear_from_encoded(Color color) {
   const auto channel = [&](int shift) {
-    return std::pow(static_cast<float>(color >> shift & 0xFF) / 255.0F, 2.2F);
+    const float encoded = static_cast<float>(color >> shift & 0xFF) / 255.0F;
+    return encoded * encoded;
   };
   return {channel(16), channel(8), channel(0)};
 }
@@ -136,11 +138,11 @@ class LitView {
     sun_map_.bind();
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    draw_table();
     const std::vector<Color> colors = label_colors(scene_.tubes.size());
     draw_lit(bin_walls(scene_.bin, Wall::solid, view_, kFineness), colors[0], {.alpha = 1.0F, .highlight = 0.02F});
     for (std::size_t i = 0; i < scene_.tubes.size(); ++i)
       draw_lit(tube_mesh(scene_.tubes[i], Vec3::Zero(), kFineness), colors[i + 1], {.alpha = 1.0F, .highlight = 0.10F});
+    draw_table();
     glEnable(GL_CULL_FACE);
     glDepthMask(GL_FALSE);
     draw_lit(bin_walls(scene_.bin, Wall::glass, view_, kFineness), colors[0], {.alpha = 0.22F, .highlight = 0.0F});
@@ -158,7 +160,7 @@ class LitView {
 
   void draw_lit(Mesh mesh, Color color, const Material& material) {
     dome_.shine_on(mesh);
-    shading_.set("albedo", linear_from_srgb(color));
+    shading_.set("albedo", linear_from_encoded(color));
     shading_.set("alpha", material.alpha);
     shading_.set("highlight", material.highlight);
     shading_.set("fade_begin", material.fade_begin);
@@ -209,8 +211,10 @@ class LitView {
     Mesh table;
     add_box(Box(Vec3(-reach, -reach, top - 0.01), Vec3(reach, reach, top)), Vec3::Zero(),
             {.facets = 4, .cell = reach / 60.0}, table);
+    glEnable(GL_CULL_FACE);  // its dark lower side would show where the upper one fades
     draw_lit(std::move(table), 0xD5D9DF,
              {.fade_begin = static_cast<float>(reach * 0.3), .fade_end = static_cast<float>(reach * 0.7)});
+    glDisable(GL_CULL_FACE);
   }
 
   const Scene& scene_;
