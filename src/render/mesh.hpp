@@ -21,10 +21,12 @@ struct Mesh {
   std::vector<std::uint32_t> indices;
 };
 
-/// How finely surfaces are divided. Flat and straight ones need no division for their shape, but to carry light.
+/// How finely surfaces are divided. Flat and straight ones need no division for their shape, but to carry
+/// light.
 struct Fineness {
-  int facets = 64;                                            ///< around a tube
-  double cell = std::numeric_limits<double>::infinity();      ///< metres, largest step along flat and straight surfaces
+  int facets = 64;  ///< around a tube
+  double cell =
+      std::numeric_limits<double>::infinity();  ///< metres, largest step along flat and straight surfaces
 };
 
 /// Cylinders with flat caps and spheres at the joints, around `origin` in world axes.

@@ -12,7 +12,9 @@ namespace tubebin {
 
 bool can_render() { return true; }
 
-Image render_preview(const Scene& scene, int width, int height) { return draw_lit_view(scene, width, height); }
+Image render_preview(const Scene& scene, int width, int height) {
+  return draw_lit_view(scene, width, height);
+}
 
 Image render_labels(const Scene& scene, const PixelWindow& window) {
   if (window.width == 0 || window.height == 0) return {};
@@ -24,8 +26,9 @@ Image render_labels(const Scene& scene, const PixelWindow& window) {
 namespace {
 
 [[noreturn]] void refuse() {
-  throw std::runtime_error("this build can't draw previews: OSMesa was missing when it was configured "
-                           "(Debian and Ubuntu: apt install libosmesa6-dev, then configure and build anew)");
+  throw std::runtime_error(
+      "this build can't draw previews: OSMesa was missing when it was configured "
+      "(Debian and Ubuntu: apt install libosmesa6-dev, then configure and build anew)");
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 namespace tubebin {
 namespace {
 
-constexpr Interval kWholeLine = {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+constexpr Interval kWholeLine = {-std::numeric_limits<double>::infinity(),
+                                 std::numeric_limits<double>::infinity()};
 
 Interval common_part(const Interval& a, const Interval& b) {
   return {std::max(a.begin, b.begin), std::min(a.end, b.end)};
@@ -32,8 +33,8 @@ SolidCylinder::SolidCylinder(const Vec3& base, const Vec3& top, double radius)
       foot_(base - base_height_ * axis_) {}
 
 // The ray's distance from the axis decides hit or miss without cancellation: with n = direction x axis it is
-// |direction . moment| / |n|. Within the plane across the axis the ray's nearest point is at t = (direction . foot) /
-// |n|^2, and half the chord is sqrt(radius^2 - distance^2) / |n|.
+// |direction . moment| / |n|. Within the plane across the axis the ray's nearest point is at t = (direction .
+// foot) / |n|^2, and half the chord is sqrt(radius^2 - distance^2) / |n|.
 Interval SolidCylinder::intersect(const Vec3& direction) const {
   const double across_squared = direction.cross(axis_).squaredNorm();
   const double distance_across = direction.dot(moment_);

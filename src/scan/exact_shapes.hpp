@@ -1,5 +1,6 @@
-// Convex solids against rays from the origin, in double precision. A ray is t * direction; a convex solid takes one
-// interval of t from it, negative t included, so a solid around the origin needs no case of its own.
+// Convex solids against rays from the origin, in double precision. A ray is t * direction; a convex solid
+// takes one interval of t from it, negative t included, so a solid around the origin needs no case of its
+// own.
 #pragma once
 
 #include <limits>
@@ -36,8 +37,9 @@ class SolidCylinder {
   double length_;
   double radius_;
   double base_height_;  ///< of the base above the origin, along the axis
-  Vec3 moment_;         ///< axis x base: direction . moment is the ray's distance from the axis, times |direction x axis|
-  Vec3 foot_;           ///< the axis' point nearest to the origin
+  Vec3 moment_;  ///< axis x base: direction . moment is the ray's distance from the axis, times |direction x
+                 ///< axis|
+  Vec3 foot_;    ///< the axis' point nearest to the origin
 };
 
 class SolidSphere {
@@ -58,7 +60,8 @@ class SolidSphere {
 /// 1 / direction, finite: a ray within a face's plane touches the box.
 Vec3 inverse_direction(const Vec3& direction);
 
-/// An axis-aligned solid box (Kay and Kajiya 1986, "Ray tracing complex scenes"). Many boxes share one ray's inverse.
+/// An axis-aligned solid box (Kay and Kajiya 1986, "Ray tracing complex scenes"). Many boxes share one ray's
+/// inverse.
 inline Interval intersect(const Eigen::AlignedBox3d& box, const Vec3& inverse_direction) {
   const Vec3 a = box.min().cwiseProduct(inverse_direction);
   const Vec3 b = box.max().cwiseProduct(inverse_direction);

@@ -13,9 +13,10 @@ namespace {
 /// Metres. A floor at exactly range_max is within range whatever the rounding of a ray's direction.
 constexpr double kDepthTolerance = 1e-9;
 
-/// Embree walks its tree in single precision with rays from the origin: a direction and a bound are each off by at
-/// most 2^-24 of the distance, the box test by a few times that. Bounds grow by 32 x 2^-24 of the farthest corner's
-/// distance (4 micrometres at 2 m), so that no solid is missed; what is hit is then decided in double precision.
+/// Embree walks its tree in single precision with rays from the origin: a direction and a bound are each off
+/// by at most 2^-24 of the distance, the box test by a few times that. Bounds grow by 32 x 2^-24 of the
+/// farthest corner's distance (4 micrometres at 2 m), so that no solid is missed; what is hit is then decided
+/// in double precision.
 constexpr double kBoundsPadding = 32.0 * 0x1p-24;
 
 /// The single precision bound just beyond a depth, so that what is equally deep is still looked at.
@@ -23,7 +24,8 @@ float beyond(double depth) { return static_cast<float>(std::max(depth, 0.0)) * (
 
 /// What Embree hands through to the callbacks of one ray.
 struct RayQuery : embree::QueryContext {
-  RayQuery(const Vec3& ray_direction, double ray_depth_min) : direction(ray_direction), depth_min(ray_depth_min) {
+  RayQuery(const Vec3& ray_direction, double ray_depth_min)
+      : direction(ray_direction), depth_min(ray_depth_min) {
     embree::init_context(*this);
   }
 
@@ -82,7 +84,8 @@ void attach(const embree::Device& device, const embree::Scene& scene, const Soli
 
 void check_device(const embree::Device& device) {
   const RTCError error = rtcGetDeviceError(device.get());
-  if (error != RTC_ERROR_NONE) throw std::runtime_error(fmt::format("Embree failed with error {}", int{error}));
+  if (error != RTC_ERROR_NONE)
+    throw std::runtime_error(fmt::format("Embree failed with error {}", int{error}));
 }
 
 RTCRayHit make_ray(const Vec3& direction, double depth_min, double depth_max) {
@@ -103,7 +106,8 @@ double first_boundary(std::vector<Interval>& parts, double depth_min) {
   double first = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < parts.size();) {
     Interval merged = parts[i++];
-    while (i < parts.size() && parts[i].begin <= merged.end) merged.end = std::max(merged.end, parts[i++].end);
+    while (i < parts.size() && parts[i].begin <= merged.end)
+      merged.end = std::max(merged.end, parts[i++].end);
     if (merged.begin >= depth_min) return std::min(first, merged.begin);
     if (merged.end >= depth_min) first = std::min(first, merged.end);
   }

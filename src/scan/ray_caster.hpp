@@ -1,4 +1,5 @@
-// First surfaces along rays from the scanner: Embree finds the tube solids near a ray, double precision decides.
+// First surfaces along rays from the scanner: Embree finds the tube solids near a ray, double precision
+// decides.
 #pragma once
 
 #include "scan/embree.hpp"
@@ -7,7 +8,8 @@
 namespace tubebin {
 
 struct Hit {
-  double depth = std::numeric_limits<double>::infinity();  ///< along the optical axis, metres; infinity: nothing
+  double depth =
+      std::numeric_limits<double>::infinity();  ///< along the optical axis, metres; infinity: nothing
   Label label = 0;
 
   bool found() const { return depth < std::numeric_limits<double>::infinity(); }
@@ -20,9 +22,9 @@ class RayCaster {
   RayCaster(const RayCaster&) = delete;  // Embree holds pointers to the solids
   RayCaster& operator=(const RayCaster&) = delete;
 
-  /// The first surface of a tube or of the bin along the ray at depth depth_min or beyond. Where the ray begins inside
-  /// a solid that is the surface through which it leaves (or enters another tube); faces between the solids of one
-  /// body are no surface. `direction`: Camera::direction_in_world.
+  /// The first surface of a tube or of the bin along the ray at depth depth_min or beyond. Where the ray
+  /// begins inside a solid that is the surface through which it leaves (or enters another tube); faces
+  /// between the solids of one body are no surface. `direction`: Camera::direction_in_world.
   Hit first_hit(const Vec3& direction) const;
 
  private:

@@ -1,7 +1,6 @@
 // The convex solids whose union is the scene, as the scanner sees them: world axes, origin at the scanner.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "scan/exact_shapes.hpp"

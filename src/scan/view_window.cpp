@@ -1,6 +1,7 @@
 #include "scan/view_window.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tubebin {
@@ -55,8 +56,8 @@ class ViewBounds {
 
   void add_point(const Vec3& p_in_scanner) { bounds_.extend(camera_.project(p_in_scanner)); }
 
-  /// The part of a convex body with quadrilateral faces that is deep enough. Corners are numbered as a box's: bit k
-  /// of the index says on which side along axis k.
+  /// The part of a convex body with quadrilateral faces that is deep enough. Corners are numbered as a box's:
+  /// bit k of the index says on which side along axis k.
   void add_hexahedron(const Corners& corners_seen) {
     Corners corners;
     std::ranges::transform(corners_seen, corners.begin(),
@@ -90,7 +91,8 @@ class ViewBounds {
   bool add_disc(const Vec3& center_seen, const Vec3& normal_seen, double radius) {
     const Vec3 center = scanner_from_seen_ * center_seen;
     const Vec3 normal = scanner_from_seen_ * normal_seen;
-    if (center.z() - radius * std::sqrt(std::max(0.0, 1.0 - normal.z() * normal.z())) < depth_min_) return false;
+    if (center.z() - radius * std::sqrt(std::max(0.0, 1.0 - normal.z() * normal.z())) < depth_min_)
+      return false;
     const auto [left, right] = slopes(center, normal, radius, 0);
     const auto [above, below] = slopes(center, normal, radius, 1);
     add_point({left, above, 1.0});
@@ -98,8 +100,8 @@ class ViewBounds {
     return true;
   }
 
-  /// The extreme values s of p[k] / p.z over the disc: the planes p[k] = s p.z touch it, so with w = e_k - s e_z,
-  /// (w . center)^2 = radius^2 (|w|^2 - (w . normal)^2), a quadratic in s.
+  /// The extreme values s of p[k] / p.z over the disc: the planes p[k] = s p.z touch it, so with w = e_k - s
+  /// e_z, (w . center)^2 = radius^2 (|w|^2 - (w . normal)^2), a quadratic in s.
   static std::pair<double, double> slopes(const Vec3& center, const Vec3& normal, double radius, int k) {
     const double r2 = radius * radius;
     const double a = center.z() * center.z() - r2 * (1.0 - normal.z() * normal.z());
@@ -117,7 +119,8 @@ class ViewBounds {
 
 }  // namespace
 
-PixelWindow view_window(const SceneSolids& solids, SeenBodies bodies, const Camera& camera, double depth_min) {
+PixelWindow view_window(const SceneSolids& solids, SeenBodies bodies, const Camera& camera,
+                        double depth_min) {
   ViewBounds bounds(camera, depth_min);
   for (const auto& cylinder : solids.cylinders) bounds.add_cylinder(cylinder.solid);
   for (const auto& sphere : solids.spheres) bounds.add_sphere(sphere.solid);

@@ -22,15 +22,16 @@ class Preview : public ::testing::Test {
   }
 };
 
-/// The drawn labels and the scanned ones: at least 99.5 % of the pixels are the same, and where they are not, one of
-/// the eight pixels around has another scanned label.
+/// The drawn labels and the scanned ones: at least 99.5 % of the pixels are the same, and where they are not,
+/// one of the eight pixels around has another scanned label.
 void expect_labels_agree(const Scene& scene) {
   const Scan scanned = scan(scene);
   const Image drawn = render_labels(scene, scanned.window);
   ASSERT_EQ(drawn.width, scanned.window.width);
   ASSERT_EQ(drawn.height, scanned.window.height);
   const auto color_at = [&](int column, int row) {
-    return scanned.cloud.colors[static_cast<std::size_t>(row) * scanned.cloud.width + static_cast<std::size_t>(column)];
+    return scanned.cloud
+        .colors[static_cast<std::size_t>(row) * scanned.cloud.width + static_cast<std::size_t>(column)];
   };
   const auto at_silhouette = [&](int column, int row) {
     for (int y = std::max(row - 1, 0); y <= std::min(row + 1, drawn.height - 1); ++y)

@@ -33,7 +33,8 @@ TEST(SolidCylinder, EndsFlatAndAtItsRadius) {
   EXPECT_DOUBLE_EQ(cylinder.intersect({1.0, 0, 2.6}).end, 1.0);
   EXPECT_TRUE(cylinder.intersect({1.0, 0, 2.499}).empty());
   const SolidCylinder below({0, -1, 3}, {0, 1, 3}, 0.5);
-  const double tangent = 0.5 / std::sqrt(9.0 - 0.25);  // slope of the line from the origin that touches the circle
+  const double tangent =
+      0.5 / std::sqrt(9.0 - 0.25);  // slope of the line from the origin that touches the circle
   EXPECT_FALSE(below.intersect({tangent * (1.0 - 1e-12), 0, 1}).empty());
   EXPECT_TRUE(below.intersect({tangent * (1.0 + 1e-12), 0, 1}).empty());
 }
@@ -87,7 +88,8 @@ TEST(ExactShapes, AgreeWithSignedDistancesOnRandomRays) {
     const SolidCylinder cylinder(a, b, radius);
     const auto hit_cylinder = [&](const Vec3& d) { return cylinder.intersect(d); };
     hits += hit_cylinder(direction).empty() ? 0 : 1;
-    expect_exact(hit_cylinder, [&](const Vec3& p) { return cylinder_distance(p, a, b, radius); }, direction);
+    expect_exact(
+        hit_cylinder, [&](const Vec3& p) { return cylinder_distance(p, a, b, radius); }, direction);
 
     const SolidSphere sphere(a, radius);
     expect_exact([&](const Vec3& d) { return sphere.intersect(d); },

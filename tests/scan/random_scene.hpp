@@ -1,4 +1,5 @@
-// Scenes for tests: tubes by the paper's algorithms, thrown anywhere into the bin's space (they may intersect).
+// Scenes for tests: tubes by the paper's algorithms, thrown anywhere into the bin's space (they may
+// intersect).
 #pragma once
 
 #include "tubebin/scene/scene.hpp"

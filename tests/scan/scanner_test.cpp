@@ -154,7 +154,8 @@ TEST(Scanner, RegionsShowTheSameSurfaces) {
 
   std::size_t tube_point = 0;
   for (std::size_t i = 0; i < full.cloud.size(); ++i) {
-    const int column = static_cast<int>(i % 1920) - bin.window.x, row = static_cast<int>(i / 1920) - bin.window.y;
+    const int column = static_cast<int>(i % 1920) - bin.window.x,
+              row = static_cast<int>(i / 1920) - bin.window.y;
     if (column < 0 || row < 0 || column >= bin.window.width || row >= bin.window.height) {
       ASSERT_FALSE(is_finite(full.cloud.points[i]));
       continue;
@@ -163,7 +164,9 @@ TEST(Scanner, RegionsShowTheSameSurfaces) {
     ASSERT_EQ(is_finite(full.cloud.points[i]), is_finite(bin.cloud.points[j]));
     ASSERT_EQ(full.cloud.labels[i], bin.cloud.labels[j]);
     ASSERT_EQ(full.cloud.colors[i], bin.cloud.colors[j]);
-    if (is_finite(full.cloud.points[i])) { ASSERT_EQ(full.cloud.points[i], bin.cloud.points[j]); }
+    if (is_finite(full.cloud.points[i])) {
+      ASSERT_EQ(full.cloud.points[i], bin.cloud.points[j]);
+    }
     if (full.cloud.labels[i] == 0) continue;
     ASSERT_LT(tube_point, tubes.cloud.size());
     ASSERT_EQ(full.cloud.points[i], tubes.cloud.points[tube_point]);
@@ -297,7 +300,9 @@ TEST(Scanner, SameSceneSameBytes) {
   const Scene scene = random_scene(10, 17);
   const Scan first = scan(scene), second = scan(scene);
   ASSERT_EQ(first.cloud.size(), second.cloud.size());
-  EXPECT_EQ(std::memcmp(first.cloud.points.data(), second.cloud.points.data(), first.cloud.size() * sizeof(Point)), 0);
+  EXPECT_EQ(
+      std::memcmp(first.cloud.points.data(), second.cloud.points.data(), first.cloud.size() * sizeof(Point)),
+      0);
   EXPECT_EQ(first.cloud.labels, second.cloud.labels);
 }
 

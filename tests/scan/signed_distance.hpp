@@ -1,6 +1,6 @@
 // An independent view of a scene: exact signed distance functions in the world frame and sphere tracing
-// (Hart 1996, "Sphere tracing: a geometric method for the antialiased ray tracing of implicit surfaces"). No formula
-// is shared with the scanner: no quadratic is solved here, and no ray meets a solid in closed form.
+// (Hart 1996, "Sphere tracing: a geometric method for the antialiased ray tracing of implicit surfaces"). No
+// formula is shared with the scanner: no quadratic is solved here, and no ray meets a solid in closed form.
 #pragma once
 
 #include <algorithm>
@@ -74,8 +74,8 @@ inline double worst_surface_distance(const Scene& scene, const Cloud& cloud) {
   return worst;
 }
 
-/// Walks from depth range_min to range_max + 1e-9, never farther than to the nearest surface. `direction`, in world
-/// axes, has depth one. A ray that passes a surface within 1e-9 m counts as a hit.
+/// Walks from depth range_min to range_max + 1e-9, never farther than to the nearest surface. `direction`, in
+/// world axes, has depth one. A ray that passes a surface within 1e-9 m counts as a hit.
 inline TracedHit sphere_trace(const Scene& scene, const Vec3& direction) {
   constexpr double kContact = 1e-9;
   const double speed = direction.norm();

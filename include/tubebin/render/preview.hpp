@@ -26,12 +26,12 @@ struct Image {
 /// Whether this build can draw (OSMesa was found when it was configured).
 bool can_render();
 
-/// The bin and its tubes in their ground-truth colours, lit, from obliquely above (as the paper's Figures 3 and 6
-/// show scenes). The bin's front walls are glass. Throws std::runtime_error where !can_render().
+/// The bin and its tubes in their ground-truth colours, lit, from obliquely above (as the paper's Figures 3
+/// and 6 show scenes). The bin's front walls are glass. Throws std::runtime_error where !can_render().
 Image render_preview(const Scene& scene, int width, int height);
 
-/// The ground-truth colours that the scanner sees in the window's pixels, black where it sees nothing: no light, no
-/// antialiasing, the scanner's camera and range. Throws std::runtime_error where !can_render().
+/// The ground-truth colours that the scanner sees in the window's pixels, black where it sees nothing: no
+/// light, no antialiasing, the scanner's camera and range. Throws std::runtime_error where !can_render().
 Image render_labels(const Scene& scene, const PixelWindow& window);
 
 /// The image as a PNG file's bytes; equal images give equal bytes.

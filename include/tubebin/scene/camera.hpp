@@ -1,5 +1,5 @@
-/// The scanner's pinhole camera: square pixels, optical axis through the image's middle, pixel (column, row) has
-/// its centre at (column + 0.5, row + 0.5), so the image spans [0, width] x [0, height].
+/// The scanner's pinhole camera: square pixels, optical axis through the image's middle, pixel (column, row)
+/// has its centre at (column + 0.5, row + 0.5), so the image spans [0, width] x [0, height].
 #pragma once
 
 #include "tubebin/scene/scene.hpp"
@@ -16,8 +16,8 @@ class Camera {
   double focal_length() const { return focal_length_; }
   const Pose& world_from_scanner() const { return world_from_scanner_; }
 
-  /// The direction, in world axes, through image position (x, y) in pixels. Its component along the optical axis is
-  /// one: the point at scanner + t * direction has depth t.
+  /// The direction, in world axes, through image position (x, y) in pixels. Its component along the optical
+  /// axis is one: the point at scanner + t * direction has depth t.
   Vec3 direction_in_world(double x, double y) const;
   /// As above, through the centre of a pixel.
   Vec3 pixel_direction_in_world(int column, int row) const {

@@ -1,4 +1,5 @@
-// Draws a mesh: positions, normals and dome light are the fixed-function vertex, normal and texture coordinate.
+// Draws a mesh: positions, normals and dome light are the fixed-function vertex, normal and texture
+// coordinate.
 #pragma once
 
 #include "render/mesh.hpp"
@@ -14,7 +15,8 @@ inline void draw(const Mesh& mesh) {
   glNormalPointer(GL_FLOAT, sizeof(Vertex), mesh.vertices.front().normal.data());
   glEnableClientState(GL_TEXTURE_COORD_ARRAY);
   glTexCoordPointer(1, GL_FLOAT, sizeof(Vertex), &mesh.vertices.front().dome_light);
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.indices.size()), GL_UNSIGNED_INT, mesh.indices.data());
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.indices.size()), GL_UNSIGNED_INT,
+                 mesh.indices.data());
 }
 
 }  // namespace tubebin

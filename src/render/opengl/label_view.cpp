@@ -10,11 +10,13 @@ namespace {
 
 /// With so many facets a tube's outline is at most 0.1 % of its radius off, a hundredth of a pixel.
 constexpr Fineness kFineness = {.facets = 64};
-/// Metres. OpenGL needs a near plane before the eye; the floor at exactly range_max must not be cut off by rounding.
+/// Metres. OpenGL needs a near plane before the eye; the floor at exactly range_max must not be cut off by
+/// rounding.
 constexpr double kNearestDepth = 1e-3;
 constexpr double kFarMargin = 1e-5;
 
-/// The scanner's pinhole, restricted to the window, as an OpenGL frustum. An OpenGL eye looks along -z with y up.
+/// The scanner's pinhole, restricted to the window, as an OpenGL frustum. An OpenGL eye looks along -z with y
+/// up.
 void set_camera(const Camera& camera, const Scanner& scanner, const PixelWindow& window) {
   const double near = std::max(scanner.range_min, kNearestDepth);
   const double metres_per_pixel = near / camera.focal_length();
@@ -23,7 +25,8 @@ void set_camera(const Camera& camera, const Scanner& scanner, const PixelWindow&
   glMatrixMode(GL_PROJECTION);
   glLoadIdentity();
   glFrustum(left * metres_per_pixel, (left + window.width) * metres_per_pixel,
-            -(top + window.height) * metres_per_pixel, -top * metres_per_pixel, near, scanner.range_max + kFarMargin);
+            -(top + window.height) * metres_per_pixel, -top * metres_per_pixel, near,
+            scanner.range_max + kFarMargin);
   Eigen::Matrix4d eye_from_world = Eigen::Matrix4d::Identity();
   eye_from_world.topLeftCorner<3, 3>() =
       Vec3(1.0, -1.0, -1.0).asDiagonal() * camera.world_from_scanner().linear().transpose();

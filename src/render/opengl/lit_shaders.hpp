@@ -19,8 +19,9 @@ void main() {
 }
 )";
 
-/// Diffuse light of the sun with its shadow and of the dome, a little light from everywhere, a soft highlight; colours
-/// are summed linearly and encoded at the end (gamma 2). A surface fades out from `fade_begin` to `fade_end`.
+/// Diffuse light of the sun with its shadow and of the dome, a little light from everywhere, a soft
+/// highlight; colours are summed linearly and encoded at the end (gamma 2). A surface fades out from
+/// `fade_begin` to `fade_end`.
 constexpr const char* kLitFragmentShader = R"(#version 120
 uniform vec3 albedo;
 uniform float alpha;

@@ -48,7 +48,8 @@ View view_of(const Eigen::AlignedBox3d& bounds, double aspect) {
   view.up = view.backward.cross(view.right);
   const double tan_up = std::tan(kFieldOfView / 2.0) / kMargin;
   const double tan_right = tan_up * aspect;
-  // Each corner keeps the eye at least so far away; along each image axis the two extreme corners settle the place.
+  // Each corner keeps the eye at least so far away; along each image axis the two extreme corners settle the
+  // place.
   Vec3 extreme_low = Vec3::Constant(std::numeric_limits<double>::max());
   Vec3 extreme_high = -extreme_low;
   for (int i = 0; i < 8; ++i) {
@@ -98,7 +99,8 @@ class Casters {
  public:
   Casters(const Scene& scene, const View& view) {
     meshes_.push_back(bin_walls(scene.bin, Wall::solid, view, kCasterFineness));
-    for (const PlacedTube& tube : scene.tubes) meshes_.push_back(tube_mesh(tube, Vec3::Zero(), kCasterFineness));
+    for (const PlacedTube& tube : scene.tubes)
+      meshes_.push_back(tube_mesh(tube, Vec3::Zero(), kCasterFineness));
   }
 
   void draw_all() const {
@@ -111,7 +113,8 @@ class Casters {
 
 class LitView {
  public:
-  LitView(const Scene& scene, const View& view, const Eigen::AlignedBox3d& bounds, const OffscreenContext& context)
+  LitView(const Scene& scene, const View& view, const Eigen::AlignedBox3d& bounds,
+          const OffscreenContext& context)
       : scene_(scene),
         view_(view),
         bounds_(bounds),
@@ -139,13 +142,16 @@ class LitView {
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     const std::vector<Color> colors = label_colors(scene_.tubes.size());
-    draw_lit(bin_walls(scene_.bin, Wall::solid, view_, kFineness), colors[0], {.alpha = 1.0F, .highlight = 0.02F});
+    draw_lit(bin_walls(scene_.bin, Wall::solid, view_, kFineness), colors[0],
+             {.alpha = 1.0F, .highlight = 0.02F});
     for (std::size_t i = 0; i < scene_.tubes.size(); ++i)
-      draw_lit(tube_mesh(scene_.tubes[i], Vec3::Zero(), kFineness), colors[i + 1], {.alpha = 1.0F, .highlight = 0.10F});
+      draw_lit(tube_mesh(scene_.tubes[i], Vec3::Zero(), kFineness), colors[i + 1],
+               {.alpha = 1.0F, .highlight = 0.10F});
     draw_table();
     glEnable(GL_CULL_FACE);
     glDepthMask(GL_FALSE);
-    draw_lit(bin_walls(scene_.bin, Wall::glass, view_, kFineness), colors[0], {.alpha = 0.22F, .highlight = 0.0F});
+    draw_lit(bin_walls(scene_.bin, Wall::glass, view_, kFineness), colors[0],
+             {.alpha = 0.22F, .highlight = 0.0F});
     glDepthMask(GL_TRUE);
     glDisable(GL_CULL_FACE);
   }

@@ -13,8 +13,8 @@
 
 namespace tubebin {
 
-/// The current context of this thread from construction on; one lives at a time. Throws std::runtime_error where
-/// there can be none of that size.
+/// The current context of this thread from construction on; one lives at a time. Throws std::runtime_error
+/// where there can be none of that size.
 class OffscreenContext {
  public:
   OffscreenContext(int width, int height);

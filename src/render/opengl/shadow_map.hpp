@@ -14,8 +14,8 @@ struct Ball {
   float radius = 0.0F;
 };
 
-/// Takes a point of the ball to its place in the light's square (x, y) and its depth away from the light (z), each
-/// in [0, 1].
+/// Takes a point of the ball to its place in the light's square (x, y) and its depth away from the light (z),
+/// each in [0, 1].
 Eigen::Matrix4f map_from_world(const Eigen::Vector3f& to_light, const Ball& ball);
 
 /// A depth texture that scenes are drawn into. The viewport and both matrices are left changed.
@@ -28,8 +28,8 @@ class ShadowMap {
 
   int pixels() const { return pixels_; }
 
-  /// `draw_casters` draws what throws shadows. Depths are a little farther than the surfaces, so that none shadows
-  /// itself.
+  /// `draw_casters` draws what throws shadows. Depths are a little farther than the surfaces, so that none
+  /// shadows itself.
   void draw(const Eigen::Matrix4f& map_from_world, const std::function<void()>& draw_casters);
 
   /// The depths, row by row, as map_from_world counts rows.
