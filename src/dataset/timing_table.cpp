@@ -1,11 +1,9 @@
 #include "tubebin/dataset/timing_table.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <map>
 #include <optional>
 
-extern const char* const kPaperResults;  // data/paper/results.yaml
+#include "tubebin/evaluation/paper_figures.hpp"
 
 namespace tubebin {
 namespace {
@@ -17,10 +15,10 @@ struct Mean {
 
 /// Table 1 of the paper, for its sets A and B.
 std::optional<double> paper_seconds(const std::string& set, int tubes) {
-  static const YAML::Node table = YAML::Load(kPaperResults)["table_1_seconds_per_test_case"];
-  const YAML::Node of_set = table[set];
-  if (!of_set || !of_set[tubes]) return std::nullopt;
-  return of_set[tubes].as<double>();
+  const auto of_set = paper_figures().generation_seconds.find(set);
+  if (of_set == paper_figures().generation_seconds.end() || !of_set->second.contains(tubes))
+    return std::nullopt;
+  return of_set->second.at(tubes);
 }
 
 std::map<int, Mean> mean_seconds(const Manifest& manifest, const std::vector<SceneId>& scenes) {
@@ -42,7 +40,8 @@ std::string format_timing_table(const Manifest& manifest, const std::vector<Scen
   if (means.empty()) return "";
   const std::string& set = scenes.front().set;
   std::string text = fmt::format(
-      "Average time to generate a test case of set {} (seconds of one worker process, rejected attempts included),\n"
+      "Average time to generate a test case of set {} (seconds of one worker process, rejected attempts "
+      "included),\n"
       "beside Table 1 of the paper\n{:>6} {:>7} {:>9} {:>9} {:>9}\n",
       set, "tubes", "cases", "here", "paper", "speed-up");
   for (const auto& [tubes, mean] : means) {

@@ -1,19 +1,13 @@
 #include "tubebin/evaluation/summary.hpp"
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <map>
-#include <numeric>
 
+#include "statistics.hpp"
 #include "tubebin/core/random.hpp"
 
 namespace tubebin {
 namespace {
-
-double mean_of(std::span<const double> values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 
 /// A seed that depends on the group alone, so that other groups in the same results don't change its
 /// interval.
@@ -114,25 +108,8 @@ GroupSummary summarize_group(const GroupKey& key, std::span<const RunScore* cons
 }  // namespace
 
 Interval bootstrap_mean(std::span<const double> values, std::uint64_t seed) {
-  Interval interval;
-  interval.mean = interval.low = interval.high = mean_of(values);
-  if (values.size() < 2) return interval;
-  Random random(seed);
-  std::vector<double> means(kBootstrapResamples);
-  for (double& mean : means) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < values.size(); ++i)
-      sum += values[static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(values.size())))];
-    mean = sum / static_cast<double>(values.size());
-  }
-  const auto quantile = [&](double share) {
-    const auto rank = static_cast<std::ptrdiff_t>(std::lround(share * (kBootstrapResamples - 1)));
-    std::nth_element(means.begin(), means.begin() + rank, means.end());
-    return means[static_cast<std::size_t>(rank)];
-  };
-  interval.low = quantile(0.025);
-  interval.high = quantile(0.975);
-  return interval;
+  return bootstrap_of_means(
+      {{values.begin(), values.end()}}, [](std::span<const double> means) { return means[0]; }, seed);
 }
 
 PooledScores pool(std::span<const SegmentationScores* const> scores) {

@@ -1,0 +1,27 @@
+/// One self-contained HTML file with everything that was measured; it opens without a network.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "tubebin/evaluation/paper_comparison.hpp"
+#include "tubebin/evaluation/scene_picture.hpp"
+
+namespace tubebin {
+
+/// The points of a run with their labels, or nothing where they are not to be had.
+using PointsOfRun = std::function<std::optional<LabelledPoints>(const RunScore&)>;
+
+struct ReportInput {
+  const Evaluation& evaluation;
+  GenerationSeconds generation_seconds;
+  PointsOfRun points_of_run;  ///< for the pictures; may be empty
+};
+
+std::string format_html_report(const ReportInput& input);
+
+/// The runs that the report shows: for each method the worst ones and the best, at most one a scene.
+std::vector<const RunScore*> pictured_runs(const std::vector<RunScore>& runs);
+
+}  // namespace tubebin
