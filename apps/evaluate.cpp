@@ -3,11 +3,18 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 #include <thread>
 
 #include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/dataset/manifest.hpp"
+#include "tubebin/dataset/progress.hpp"
+#include "tubebin/evaluation/html_report.hpp"
 #include "tubebin/evaluation/predictions.hpp"
 #include "tubebin/evaluation/result_tables.hpp"
 #include "tubebin/evaluation/results_folder.hpp"
@@ -22,6 +29,8 @@ Examples:
       one pair of clouds: its matching and its micro-recall
   evaluate results --html report.html
       the results folder of model_tubes: tables here, plots and pictures in the report
+  evaluate results_a results_b --paper --plots plots
+      both sets together, against the paper's tables, figures and claims
   evaluate results --format csv > groups.csv
       one line for each method, set, number of tubes and ratio, with every measure
   evaluate dataset --predictions my_labels
@@ -46,18 +55,23 @@ std::vector<std::string> names_of(const std::map<std::string, Value>& values) {
 }
 
 struct Arguments {
-  std::string folder;
+  std::vector<std::string> folders;
   std::string filtered;
   std::string labeled;
   std::string predictions;
   std::string dataset;
+  std::string html;
+  std::string plots;
+  bool paper = false;
+  bool quiet = false;
   std::string field = "auto";
   std::string format = "table";
   int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
-  auto* folder = app.add_option("FOLDER", arguments.folder, "Results folder, or data set with --predictions");
+  auto* folder =
+      app.add_option("FOLDERS", arguments.folders, "Results folders, or a data set with --predictions");
   auto* filtered =
       app.add_option("--filtered", arguments.filtered, "Cloud with the ground truth (PCD or PLY)");
   auto* labeled =
@@ -74,11 +88,18 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--format", arguments.format, "Of the tables")
       ->check(CLI::IsMember(names_of(kFormats)))
       ->capture_default_str();
+  auto* html = app.add_option("--html", arguments.html,
+                              "Also write a report: one file with tables, plots and pictures")
+                   ->type_name("FILE");
+  auto* plots =
+      app.add_option("--plots", arguments.plots, "Also write the plots as .svg files")->type_name("DIR");
+  auto* paper = app.add_flag("--paper", arguments.paper, "Also compare with the paper's figures and claims");
+  app.add_flag("-q,--quiet", arguments.quiet, "No progress");
   app.add_option("-j,--jobs", arguments.jobs, "Threads")->check(CLI::Range(1, 1024))->capture_default_str();
   filtered->needs(labeled)->excludes(folder)->excludes(predictions);
   labeled->needs(filtered);
   predictions->needs(folder)->excludes(dataset);
-  dataset->needs(folder);
+  for (CLI::Option* option : {dataset, html, plots, paper}) option->needs(folder);
 }
 
 int evaluate_pair(const Arguments& arguments) {
@@ -108,22 +129,62 @@ void print_gaps(const Evaluation& evaluation) {
   for (const std::string& note : evaluation.notes) fmt::print(stderr, "evaluate: {}\n", note);
 }
 
-int evaluate_folder(const Arguments& arguments) {
-  const Evaluation evaluation = arguments.predictions.empty()
-                                    ? read_results(arguments.folder, {arguments.dataset, arguments.jobs, {}})
-                                    : score_predictions(arguments.folder, arguments.predictions,
-                                                        {kFields.at(arguments.field), arguments.jobs, {}});
-  fmt::print("{}", format_results(evaluation, kFormats.at(arguments.format)));
+Evaluation read_evaluation(const Arguments& arguments) {
+  std::optional<Progress> progress;
+  const OnProgress on_progress = [&](std::size_t done, std::size_t total) {
+    if (done == 1)
+      progress.emplace(total, "scenes", arguments.quiet ? Progress::Style::none : Progress::Style::automatic);
+    progress->count_done();
+    progress->show();
+  };
+  if (arguments.predictions.empty())
+    return read_results(arguments.folders, {arguments.dataset, arguments.jobs, on_progress});
+  if (arguments.folders.size() > 1) throw_config_error("--predictions takes one data set");
+  return score_predictions(arguments.folders.front(), arguments.predictions,
+                           {kFields.at(arguments.field), arguments.jobs, on_progress});
+}
+
+/// What the manifests of the runs' data sets say.
+GenerationSeconds generation_seconds(const Evaluation& evaluation) {
+  std::set<std::string> datasets;
+  for (const RunScore& run : evaluation.runs)
+    if (!run.dataset.empty()) datasets.insert(run.dataset);
+  GenerationSeconds seconds;
+  for (const std::string& dataset : datasets) {
+    const Manifest manifest(dataset);
+    for (const auto& [id, record] : manifest.records())
+      if (const auto total = record.seconds.find("total"); total != record.seconds.end())
+        seconds[parse_scene_name(id).set][record.tubes].push_back(total->second);
+  }
+  return seconds;
+}
+
+void write_plots(const std::string& folder, const std::vector<Plot>& plots) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw_io_error("{}: cannot be made: {}", folder, error.message());
+  for (const Plot& plot : plots) write_file_atomically(folder + "/" + plot.name + ".svg", format_svg(plot));
+}
+
+int evaluate_folders(const Arguments& arguments) {
+  const Evaluation evaluation = read_evaluation(arguments);
+  const GenerationSeconds generation = generation_seconds(evaluation);
+  fmt::print("{}", format_results(evaluation, kFormats.at(arguments.format),
+                                  arguments.paper ? &generation : nullptr));
   print_gaps(evaluation);
+  if (!arguments.html.empty())
+    write_file_atomically(arguments.html, format_html_report({evaluation, generation, read_points}));
+  if (!arguments.plots.empty())
+    write_plots(arguments.plots, paper_plots(summarize(evaluation.runs), generation));
   const bool is_complete = evaluation.missing.empty() && evaluation.failed.empty();
   return static_cast<int>(is_complete ? ExitCode::done : ExitCode::incomplete);
 }
 
 int run(const Arguments& arguments) {
   if (!arguments.filtered.empty()) return evaluate_pair(arguments);
-  if (arguments.folder.empty())
+  if (arguments.folders.empty())
     throw_config_error("a results folder, or --filtered and --labeled, is needed; --help shows examples");
-  return evaluate_folder(arguments);
+  return evaluate_folders(arguments);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs what building and testing needs and what is missing, with apt (Debian 12, Ubuntu 24.04).
+# Usage: scripts/install_dependencies.sh [PACKAGE...]   (further packages to install)
 set -euo pipefail
 
 packages=(
@@ -7,6 +8,7 @@ packages=(
   libode-dev libembree-dev libpcl-dev libosmesa6-dev libpng-dev
   libeigen3-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev libspdlog-dev libfmt-dev libxxhash-dev
   libgtest-dev libgmock-dev libbenchmark-dev
+  "$@"
 )
 
 command -v apt-get > /dev/null || { echo "$0: needs apt (Debian 12 or Ubuntu 24.04); install by other means: ${packages[*]}" >&2; exit 1; }

@@ -44,7 +44,8 @@ std::string Progress::status() const {
   const std::string time = done_ == total_ ? fmt::format("took {}", clock_text(elapsed))
                            : done_ == 0    ? std::string("ETA --:--")
                                            : fmt::format("ETA {}", clock_text(static_cast<double>(total_ - done_) / rate));
-  return fmt::format("{}/{} {}, {:.1f} {}/s, {} rejects, {}", done_, total_, noun_, rate, noun_, rejects_, time);
+  const std::string rejects = rejects_ > 0 ? fmt::format(" {} rejects,", rejects_) : "";
+  return fmt::format("{}/{} {}, {:.1f} {}/s,{} {}", done_, total_, noun_, rate, noun_, rejects, time);
 }
 
 void Progress::draw_bar() {

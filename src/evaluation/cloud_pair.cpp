@@ -109,6 +109,7 @@ PairedIds pair_clouds(const NamedCloud& filtered, const NamedCloud& labeled, Seg
       ++pairs.unannotated;
       continue;
     }
+    pairs.points.push_back(static_cast<std::uint32_t>(i));
     pairs.truth.push_back(truth[i]);
     pairs.predicted.push_back(predicted[i]);
     pairs.missing += found[i] ? 0 : 1;

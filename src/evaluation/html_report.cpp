@@ -131,17 +131,9 @@ std::string plots_html(const std::vector<Plot>& plots) {
 }
 
 std::string paper_html(const ReportInput& input, const std::vector<GroupSummary>& groups) {
-  std::vector<Table> tables;
-  if (!input.generation_seconds.empty())
-    tables.push_back(claims_table("Claims of Section 6.1", generation_claims(input.generation_seconds)));
-  for (const std::string& method : methods_of(groups))
-    tables.push_back(claims_table(fmt::format("Claims of Section 6.2, {}", method),
-                                  modelling_claims(input.evaluation.runs, method)));
-  tables.push_back(paper_table_1(input.generation_seconds));
-  for (const std::string& method : methods_of(groups)) tables.push_back(paper_table_2(groups, method));
   std::string html;
-  for (const Table& table : tables)
-    if (!table.rows.empty()) html += format_html(table);
+  for (const Table& table : paper_tables(input.evaluation, groups, input.generation_seconds))
+    html += format_html(table);
   return html;
 }
 

@@ -5,6 +5,7 @@
 #include "statistics.hpp"
 #include "tubebin/evaluation/paper_comparison.hpp"
 #include "tubebin/evaluation/paper_figures.hpp"
+#include "tubebin/evaluation/result_tables.hpp"
 
 namespace tubebin {
 
@@ -66,6 +67,19 @@ Table paper_table_2(const std::vector<GroupSummary>& groups, const std::string& 
     if (has_value) table.rows.push_back(std::move(row));
   }
   return table;
+}
+
+std::vector<Table> paper_tables(const Evaluation& evaluation, const std::vector<GroupSummary>& groups,
+                                const GenerationSeconds& seconds) {
+  std::vector<Table> tables;
+  if (!seconds.empty()) tables.push_back(claims_table("Claims of Section 6.1", generation_claims(seconds)));
+  for (const std::string& method : methods_of(groups))
+    tables.push_back(claims_table(fmt::format("Claims of Section 6.2, {}", method),
+                                  modelling_claims(evaluation.runs, method)));
+  tables.push_back(paper_table_1(seconds));
+  for (const std::string& method : methods_of(groups)) tables.push_back(paper_table_2(groups, method));
+  std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });
+  return tables;
 }
 
 }  // namespace tubebin

@@ -87,6 +87,9 @@ RunScore score_scene(const std::string& dataset, const std::string& scene, const
   }
   RunScore run = score_run(key, contingency, matching, scene_truth ? &*scene_truth : nullptr, {});
   run.failed = files.labeled.empty();
+  if (scene_truth) run.dataset = dataset;
+  run.filtered = truth_path;
+  run.labeled = files.labeled;
   return run;
 }
 
@@ -105,7 +108,7 @@ Evaluation score_predictions(const std::string& dataset, const std::string& fold
 
   Evaluation evaluation;
   evaluation.source = folder;
-  evaluation.dataset = dataset;
+
   evaluation.missing_counts_as_zero = true;
   evaluation.runs.resize(scenes.size());
   const std::string method = fs::path(folder).lexically_normal().filename().string();

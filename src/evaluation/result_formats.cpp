@@ -27,7 +27,18 @@ OrderedJson rows_as_objects(const Table& table) {
   return rows;
 }
 
-std::string format_json(const Evaluation& evaluation, const std::vector<GroupSummary>& groups) {
+OrderedJson claims_as_objects(const std::vector<Claim>& claims) {
+  OrderedJson list = OrderedJson::array();
+  for (const Claim& claim : claims)
+    list.push_back({{"claim", claim.statement},
+                    {"paper", claim.paper},
+                    {"here", claim.here},
+                    {"verdict", to_string(claim.verdict)}});
+  return list;
+}
+
+std::string format_json(const Evaluation& evaluation, const std::vector<GroupSummary>& groups,
+                        const GenerationSeconds* generation) {
   OrderedJson json;
   json["source"] = evaluation.source;
   json["runs"] = evaluation.runs.size();
@@ -37,6 +48,11 @@ std::string format_json(const Evaluation& evaluation, const std::vector<GroupSum
   json["overview"] = rows_as_objects(overview_table(evaluation));
   json["groups"] = rows_as_objects(group_table(groups));
   json["by_visibility"] = rows_as_objects(visibility_table(evaluation));
+  if (generation != nullptr) {
+    json["claims"]["generation"] = claims_as_objects(generation_claims(*generation));
+    for (const std::string& method : methods_of(groups))
+      json["claims"][method] = claims_as_objects(modelling_claims(evaluation.runs, method));
+  }
   return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
@@ -112,12 +128,16 @@ std::string format_pair(const PairedIds& pairs, TableFormat format) {
          pair_summary(pairs, contingency, matching);
 }
 
-std::string format_results(const Evaluation& evaluation, TableFormat format) {
+std::string format_results(const Evaluation& evaluation, TableFormat format,
+                           const GenerationSeconds* generation) {
   const std::vector<GroupSummary> groups = summarize(evaluation.runs);
-  if (format == TableFormat::json) return format_json(evaluation, groups);
+  if (format == TableFormat::json) return format_json(evaluation, groups, generation);
   if (format == TableFormat::csv) return format_csv(group_table(groups));
+  std::vector<Table> tables;
+  if (generation != nullptr) tables = paper_tables(evaluation, groups, *generation);
+  for (Table& table : result_tables(evaluation, groups)) tables.push_back(std::move(table));
   std::string text;
-  for (const Table& table : result_tables(evaluation, groups)) {
+  for (const Table& table : tables) {
     if (!text.empty()) text += "\n";
     text += format == TableFormat::markdown ? format_markdown(table) : format_text(table);
   }

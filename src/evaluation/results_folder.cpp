@@ -134,6 +134,10 @@ RunScore read_run(const std::string& folder, RunKey key, const SceneTruth* truth
   // Segments without a point in the filtered cloud are tubes of the model all the same.
   run.scores.predicted_tubes =
       std::max(run.scores.predicted_tubes, root.at("model_tubes").integer({0, kMaxPoints}));
+  if (fs::exists(folder + "/filtered.pcd") && fs::exists(folder + "/labeled.pcd")) {
+    run.filtered = folder + "/filtered.pcd";
+    run.labeled = folder + "/labeled.pcd";
+  }
   if (const std::string times = folder + "/times.json"; fs::exists(times)) {
     const nlohmann::json times_json = parse_json(read_file(times), times);
     run.seconds = JsonPlace(times_json, times).at("total").number();
@@ -205,6 +209,7 @@ SceneRuns read_scene_runs(const std::string& folder, const Index& index, const s
       const std::string run = run_folder(scene, method, ratio);
       if (fs::exists(folder + "/" + run)) {
         result.runs.push_back(read_run(folder + "/" + run, key, known_truth));
+        if (truth) result.runs.back().dataset = index.dataset;
       } else if (const auto failure = failures.find(run); failure != failures.end()) {
         result.runs.push_back(failed_run(key, record ? &*record : nullptr, known_truth));
         result.failed.push_back(fmt::format("{}: {}", key.name(), failure->second));
@@ -225,9 +230,8 @@ void append(Evaluation& evaluation, SceneRuns& scene) {
   move_all(scene.failed, evaluation.failed);
 }
 
-}  // namespace
-
-Evaluation read_results(const std::string& folder, const ResultsOptions& options) {
+/// One folder's runs, added to the evaluation.
+void read_folder(const std::string& folder, const ResultsOptions& options, Evaluation& evaluation) {
   Index index = read_index(folder);
   if (!options.dataset.empty()) index.dataset = options.dataset;
   const std::map<std::string, std::string> failures = read_failures(folder);
@@ -237,24 +241,37 @@ Evaluation read_results(const std::string& folder, const ResultsOptions& options
       [&](std::size_t i) { scenes[i] = read_scene_runs(folder, index, index.scenes[i], failures); },
       options.on_progress);
 
-  Evaluation evaluation;
-  evaluation.source = folder;
-  evaluation.configuration = index.configuration;
+  const std::size_t runs_before = evaluation.runs.size();
   std::size_t without_truth = 0;
   for (SceneRuns& scene : scenes) {
     without_truth += scene.has_truth ? 0 : 1;
     append(evaluation, scene);
   }
-  if (evaluation.runs.empty())
-    throw_io_error("{}: has none of the {} runs that its index.json names", folder,
-                   evaluation.missing.size());
-  if (without_truth < scenes.size()) evaluation.dataset = index.dataset;
+  if (evaluation.runs.size() == runs_before)
+    throw_io_error("{}: has none of the runs that its index.json names", folder);
   if (without_truth > 0)
     evaluation.notes.push_back(
         fmt::format("{} of {} scenes have no scene.json in {}: they add nothing to centreline errors and "
-                    "visibility (--dataset DIR "
-                    "says where the data set is)",
+                    "visibility (--dataset "
+                    "DIR says where the data set is)",
                     without_truth, scenes.size(), index.dataset));
+  evaluation.source += (evaluation.source.empty() ? "" : ", ") + folder;
+  evaluation.configuration += fmt::format("{}:\n{}\n", folder, index.configuration);
+}
+
+void require_distinct_runs(const Evaluation& evaluation) {
+  std::set<std::string> names;
+  for (const RunScore& run : evaluation.runs)
+    if (!names.insert(run.key.name()).second)
+      throw_io_error("{}: the run {} is there twice", evaluation.source, run.key.name());
+}
+
+}  // namespace
+
+Evaluation read_results(const std::vector<std::string>& folders, const ResultsOptions& options) {
+  Evaluation evaluation;
+  for (const std::string& folder : folders) read_folder(folder, options, evaluation);
+  require_distinct_runs(evaluation);
   return evaluation;
 }
 

@@ -82,8 +82,21 @@ TEST_F(EvaluateApp, AResultsFolder) {
   const CommandResult result = evaluate("results");
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_THAT(result.output, AllOf(HasSubstr("(Figure 8)"), HasSubstr("(Figure 9)"), HasSubstr("(Table 2)")));
-  EXPECT_EQ(evaluate("results --format markdown --jobs 1").output,
-            evaluate("results --format markdown --jobs 3").output);
+  EXPECT_NE(result.output.find("12/12 scenes"), std::string::npos);
+  EXPECT_EQ(evaluate("results --format markdown --jobs 1", "2>/dev/null").output,
+            evaluate("results --format markdown --jobs 3", "2>/dev/null").output);
+}
+
+TEST_F(EvaluateApp, ReportPlotsAndThePaper) {
+  testing::write_synthetic_sweep(folder_.path(), {});
+  const CommandResult result = evaluate("results --html report.html --plots plots --paper");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("Claims of Section 6.2, centerline"));
+  EXPECT_THAT(read_file(path("report.html")), HasSubstr("</html>"));
+  for (const char* plot : {"figure_8", "figure_9", "table_2_centerline"})
+    EXPECT_THAT(read_file(path(std::string("plots/") + plot + ".svg")), HasSubstr("</svg>"));
+  EXPECT_EQ(evaluate("results --html nowhere/report.html").exit_code, 1);
+  EXPECT_EQ(evaluate("results results").exit_code, 1);  // every run twice
 }
 
 TEST_F(EvaluateApp, AnUnfinishedResultsFolderExitsWithThree) {
@@ -163,7 +176,7 @@ TEST_F(EvaluateApp, TheDocumentedForeignAlgorithmIsScored) {
   const CommandResult program = testing::run_command(*python + " " + path("kmeans.py") + " " +
                                                      path("dataset") + " " + path("kmeans_labels") + " 2>&1");
   ASSERT_EQ(program.exit_code, 0) << program.output;
-  const CommandResult result = evaluate("dataset --predictions kmeans_labels --format json");
+  const CommandResult result = evaluate("dataset --predictions kmeans_labels --format json --quiet");
   ASSERT_EQ(result.exit_code, 0) << result.output;
   const auto json = nlohmann::json::parse(result.output);
   EXPECT_EQ(json["groups"][0]["method"], "kmeans_labels");

@@ -25,7 +25,7 @@ class ResultsFolder : public ::testing::Test {
   fs::path run() const { return folder_.path() / "results" / "B2" / "001" / "centerline_0.3"; }
   std::string error() const {
     try {
-      read_results(results(), {});
+      read_results({results()}, {});
     } catch (const IoError& e) {
       return e.what();
     }
@@ -37,7 +37,7 @@ class ResultsFolder : public ::testing::Test {
 };
 
 TEST_F(ResultsFolder, EveryRunHasItsMicroRecall) {
-  const Evaluation evaluation = read_results(results(), {"", 2, {}});
+  const Evaluation evaluation = read_results({results()}, {"", 2, {}});
   ASSERT_THAT(evaluation.runs, SizeIs(24));
   EXPECT_THAT(evaluation.missing, IsEmpty());
   EXPECT_THAT(evaluation.notes, IsEmpty());
@@ -51,13 +51,13 @@ TEST_F(ResultsFolder, EveryRunHasItsMicroRecall) {
 }
 
 TEST_F(ResultsFolder, ThreadsDoNotChangeTheResult) {
-  EXPECT_EQ(format_results(read_results(results(), {"", 1, {}}), TableFormat::json),
-            format_results(read_results(results(), {"", 4, {}}), TableFormat::json));
+  EXPECT_EQ(format_results(read_results({results()}, {"", 1, {}}), TableFormat::json),
+            format_results(read_results({results()}, {"", 4, {}}), TableFormat::json));
 }
 
 TEST_F(ResultsFolder, RunsThatAreNotThereYetAreNamed) {
   fs::remove_all(run());
-  const Evaluation evaluation = read_results(results(), {});
+  const Evaluation evaluation = read_results({results()}, {});
   EXPECT_THAT(evaluation.runs, SizeIs(23));
   EXPECT_THAT(evaluation.missing, ElementsAre("B2/001 centerline 0.3"));
 }
@@ -68,7 +68,7 @@ TEST_F(ResultsFolder, FailedRunsCountAsZero) {
       folder_.path() / "results" / "failures.jsonl",
       R"({"scene": "B2/001", "method": "centerline", "ratio": 0.3, "error": "no point in the bin"})"
       "\n");
-  const Evaluation evaluation = read_results(results(), {});
+  const Evaluation evaluation = read_results({results()}, {});
   EXPECT_THAT(evaluation.runs, SizeIs(24));
   EXPECT_THAT(evaluation.failed, ElementsAre("B2/001 centerline 0.3: no point in the bin"));
   for (const RunScore& one : evaluation.runs)
@@ -80,10 +80,10 @@ TEST_F(ResultsFolder, FailedRunsCountAsZero) {
 
 TEST_F(ResultsFolder, WithoutItsDataSetItSaysWhatCannotBeMeasured) {
   fs::rename(folder_.path() / "dataset", folder_.path() / "moved");
-  const Evaluation evaluation = read_results(results(), {});
+  const Evaluation evaluation = read_results({results()}, {});
   EXPECT_THAT(evaluation.notes, ElementsAre(HasSubstr("12 of 12 scenes have no scene.json")));
   EXPECT_THAT(evaluation.runs.front().by_visibility, IsEmpty());
-  const Evaluation moved = read_results(results(), {(folder_.path() / "moved").string(), 1, {}});
+  const Evaluation moved = read_results({results()}, {(folder_.path() / "moved").string(), 1, {}});
   EXPECT_THAT(moved.notes, IsEmpty());
 }
 
@@ -110,7 +110,7 @@ TEST_F(ResultsFolder, DamagedFilesAreNamed) {
 TEST_F(ResultsFolder, FoldersThatAreNoResults) {
   for (const char* scene : {"A1", "A2", "A3", "B1", "B2", "B3"})
     fs::remove_all(folder_.path() / "results" / scene);
-  EXPECT_THAT(error(), HasSubstr("has none of the 24 runs"));
+  EXPECT_THAT(error(), HasSubstr("has none of the runs"));
   testing::write_text(folder_.path() / "results" / "index.json", "{}");
   EXPECT_THAT(error(), HasSubstr("index.json: /format: missing"));
   testing::write_text(folder_.path() / "results" / "index.json", "hello");
@@ -122,7 +122,7 @@ TEST_F(ResultsFolder, FoldersThatAreNoResults) {
 }
 
 TEST_F(ResultsFolder, GroupsAreMeansOverTheirCases) {
-  const std::vector<GroupSummary> groups = summarize(read_results(results(), {}).runs);
+  const std::vector<GroupSummary> groups = summarize(read_results({results()}, {}).runs);
   ASSERT_THAT(groups, SizeIs(12));
   const GroupSummary& first = groups.front();
   EXPECT_EQ(first.key, (GroupKey{"centerline", "A", 1, 0.3}));
@@ -134,7 +134,7 @@ TEST_F(ResultsFolder, GroupsAreMeansOverTheirCases) {
 }
 
 TEST_F(ResultsFolder, TablesHoldTheFigures) {
-  const Evaluation evaluation = read_results(results(), {});
+  const Evaluation evaluation = read_results({results()}, {});
   const std::vector<GroupSummary> groups = summarize(evaluation.runs);
   const Table figure_8 = figure_8_table(groups, "centerline");
   EXPECT_THAT(figure_8.headers, ElementsAre("tubes", "set A", "set B"));
@@ -151,7 +151,7 @@ TEST_F(ResultsFolder, TablesHoldTheFigures) {
 }
 
 TEST_F(ResultsFolder, FormatsAgree) {
-  const Evaluation evaluation = read_results(results(), {});
+  const Evaluation evaluation = read_results({results()}, {});
   const auto json = nlohmann::json::parse(format_results(evaluation, TableFormat::json));
   EXPECT_EQ(json["groups"].size(), 12U);
   const std::string csv = format_results(evaluation, TableFormat::csv);

@@ -20,7 +20,8 @@ struct NamedCloud {
 
 /// Ids of the points that have a position and a ground truth, in the filtered cloud's order.
 struct PairedIds {
-  std::vector<SegmentId> truth;  ///< label (0 = bin) or colour
+  std::vector<std::uint32_t> points;  ///< index in the filtered cloud
+  std::vector<SegmentId> truth;       ///< label (0 = bin) or colour
   std::vector<SegmentId>
       predicted;  ///< label or colour; kNullId also where the labelled cloud lacks the point
   std::optional<SegmentId> bin_id;  ///< of `truth`; colours alone do not tell which is the bin's

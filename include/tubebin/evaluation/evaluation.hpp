@@ -12,8 +12,7 @@ namespace tubebin {
 
 /// Scored runs of one or several algorithms, with what is missing.
 struct Evaluation {
-  std::string source;                   ///< the folder, as it was given
-  std::string dataset;                  ///< the data set's folder; empty where it is not known
+  std::string source;                   ///< the folders, as they were given
   std::vector<RunScore> runs;           ///< by set, tubes, case, method and ratio
   std::vector<std::string> missing;     ///< runs or scenes without a result, each named
   bool missing_counts_as_zero = false;  ///< else they are not among `runs`

@@ -15,7 +15,7 @@ namespace tubebin {
 /// Seconds to generate each test case, by set and number of tubes; empty where they are not known.
 using GenerationSeconds = std::map<std::string, std::map<int, std::vector<double>>>;
 
-enum class Verdict { confirmed, not_confirmed, not_measured };
+enum class Verdict { not_measured, confirmed, not_confirmed };
 /// "confirmed", "not confirmed", "not measured".
 const char* to_string(Verdict verdict);
 
@@ -39,6 +39,10 @@ Table claims_table(const std::string& title, const std::vector<Claim>& claims);
 Table paper_table_1(const GenerationSeconds& seconds);
 /// Table 2 (set A) with the paper's columns beside ours.
 Table paper_table_2(const std::vector<GroupSummary>& groups, const std::string& method);
+
+/// Everything above that has rows: claims, then Tables 1 and 2.
+std::vector<Table> paper_tables(const Evaluation& evaluation, const std::vector<GroupSummary>& groups,
+                                const GenerationSeconds& seconds);
 
 /// Figures 8 and 9, and Tables 1 and 2 as plots, with the paper's values; those that have data.
 std::vector<Plot> paper_plots(const std::vector<GroupSummary>& groups, const GenerationSeconds& seconds);

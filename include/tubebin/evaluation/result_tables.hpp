@@ -6,6 +6,7 @@
 
 #include "tubebin/evaluation/cloud_pair.hpp"
 #include "tubebin/evaluation/evaluation.hpp"
+#include "tubebin/evaluation/paper_comparison.hpp"
 #include "tubebin/evaluation/summary.hpp"
 #include "tubebin/evaluation/table.hpp"
 
@@ -42,8 +43,10 @@ std::vector<Table> result_tables(const Evaluation& evaluation, const std::vector
 /// One row a group with every measure, for programs.
 Table group_table(const std::vector<GroupSummary>& groups);
 
-/// The evaluation in the format; `csv` is the group table alone.
-std::string format_results(const Evaluation& evaluation, TableFormat format);
+/// The evaluation in the format, with the paper's figures and claims where `generation` (maybe empty) is
+/// given; `csv` is the group table alone.
+std::string format_results(const Evaluation& evaluation, TableFormat format,
+                           const GenerationSeconds* generation = nullptr);
 
 /// A pair of clouds: one row a ground-truth segment with its match. Colours are written as #rrggbb.
 Table matching_table(const Contingency& contingency, const Matching& matching, const PairedIds& pairs);

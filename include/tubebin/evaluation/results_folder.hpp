@@ -2,20 +2,22 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "tubebin/evaluation/evaluation.hpp"
 
 namespace tubebin {
 
 struct ResultsOptions {
-  std::string dataset;  ///< the data set's folder; empty: as the results folder says
+  std::string dataset;  ///< the data set's folder; empty: as each results folder says
   int jobs = 1;         ///< threads
   OnProgress on_progress;
 };
 
-/// Runs that the index asks for and that are not there yet are left out and named; failed ones count as zero.
-/// Throws IoError naming the file and the place where the folder is no results folder, has no complete run,
-/// or a file in it is damaged.
-Evaluation read_results(const std::string& folder, const ResultsOptions& options);
+/// Reads one or several results folders together. Runs that an index asks for and that are not there yet are
+/// left out and named; failed ones count as zero. Throws IoError naming the file and the place where a folder
+/// is no results folder, has no complete run, or a file in it is damaged; and where two folders have the same
+/// run.
+Evaluation read_results(const std::vector<std::string>& folders, const ResultsOptions& options);
 
 }  // namespace tubebin

@@ -47,6 +47,9 @@ struct RunScore {
   std::vector<SegmentationScores>
       by_visibility;              ///< kVisibilityClasses of them; empty where the scene is not known
   std::optional<double> seconds;  ///< modelling time
+  std::string dataset;            ///< the data set's folder; empty where the scene is not known
+  std::string filtered;           ///< files of the clouds; empty where they were not kept
+  std::string labeled;
 };
 
 /// `matching` is of `contingency`, whose ground-truth ids are labels. `truth` is null where the scene is not

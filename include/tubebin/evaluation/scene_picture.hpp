@@ -1,11 +1,12 @@
 /// Pictures of a scene as the scanner sees it: ground truth, labels, and which points are wrong.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tubebin/cloud/cloud.hpp"
-#include "tubebin/evaluation/contingency.hpp"
+#include "tubebin/evaluation/run_score.hpp"
 #include "tubebin/scene/scene.hpp"
 
 namespace tubebin {
@@ -30,5 +31,9 @@ struct ScenePicture {
 };
 
 ScenePicture draw_scene(const LabelledPoints& points);
+
+/// The run's points, where its clouds were kept and its scene is known. Points of the bin without a label are
+/// left out.
+std::optional<LabelledPoints> read_points(const RunScore& run);
 
 }  // namespace tubebin
