@@ -1,0 +1,169 @@
+/// Tubes from point clouds: one cloud, or every cloud of a data set.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+
+#include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/dataset/dataset_config.hpp"
+#include "tubebin/dataset/model_dataset.hpp"
+#include "tubebin/dataset/worker_pool.hpp"
+#include "tubebin/modeling/model_json.hpp"
+
+namespace {
+
+using namespace tubebin;
+namespace fs = std::filesystem;
+
+constexpr const char* kExamples = R"(
+Examples:
+  model_tubes dataset_a/A10/007/cloud.pcd --output model
+      the tubes of one cloud: model/filtered.pcd, model/labeled.pcd, model/model.json
+  model_tubes scan.ply --scale 0.001 --radius 0.0125 --output model
+      a scanner's file in millimetres; floor and walls of the bin are found in the cloud
+  model_tubes dataset_a --output results --ratios 0.1:1.0:0.1 --jobs 4
+      every cloud of a data set at ten ratios, for evaluate (see docs/results_format.md)
+  model_tubes dataset_a --output results --method region_growing --ratios 0.3
+      the paper's method, into the same results
+
+Run the same command again after an interruption: complete results are kept.
+Exit codes: 0 done; 1 input or output failed; 2 wrong usage or configuration; 3 finished, but some clouds could not be
+done (each is named); 130 and 143 interrupted by Ctrl-C or SIGTERM.)";
+
+struct Arguments {
+  std::string input;
+  std::string output;
+  std::string config;
+  std::string method;
+  std::optional<double> ratio;
+  std::string ratios;
+  std::optional<double> radius;
+  std::optional<double> tube_length;
+  std::optional<std::uint64_t> seed;
+  double scale = 1.0;
+  int jobs = available_cores();
+  int cases = 0;
+  bool keep_clouds = false;
+  bool quiet = false;
+};
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("CLOUD_OR_DATASET", arguments.input, "A .pcd or .ply file, or a data set's folder")->required();
+  app.add_option("-o,--output", arguments.output, "Folder of the results")->type_name("DIR")->required();
+  app.add_option("-c,--config", arguments.config, "Options (YAML, see docs/modeling.md)")->type_name("modeling.yaml");
+  app.add_option("--method", arguments.method, "centerline, region_growing, or both (data sets only)")
+      ->check(CLI::IsMember({"centerline", "region_growing", "both"}));
+  app.add_option("--ratio", arguments.ratio, "Part of the points to keep, above 0 and up to 1");
+  app.add_option("--ratios", arguments.ratios, "Ratios for a data set: 0.1,0.3,1 or first:last:step")
+      ->type_name("0.1:1.0:0.1");
+  app.add_option("--radius", arguments.radius, "Radius of the tubes in metres; without it, estimated");
+  app.add_option("--tube-length", arguments.tube_length, "Length of every tube in metres; without it, estimated");
+  app.add_option("--scale", arguments.scale, "Factor from the file's unit to metres: 0.001 for millimetres")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--seed", arguments.seed, "Seed of downsampling and RANSAC");
+  app.add_option("-j,--jobs", arguments.jobs, "Worker processes for a data set")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  app.add_option("--cases", arguments.cases, "Only the first cases of each set and number of tubes")
+      ->check(CLI::Range(1, 1000000));
+  app.add_flag("--keep-clouds", arguments.keep_clouds, "Also write filtered.pcd and labeled.pcd of a data set's runs");
+  app.add_flag_callback(
+      "--config-reference",
+      [] {
+        ModelConfig defaults;
+        fmt::print("{}", document_fields([&](Fields& fields) { describe(fields, defaults); }));
+        throw CLI::Success();
+      },
+      "Print every key of a configuration as Markdown, and exit");
+  app.add_flag("-q,--quiet", arguments.quiet, "No progress, only errors and results");
+}
+
+/// Numbers from the command line pass the same checks as the configuration's.
+ModelConfig resolve_config(const Arguments& arguments) {
+  ModelConfig config = arguments.config.empty() ? ModelConfig{} : load_model_config(arguments.config);
+  std::string text;
+  const auto set = [&](const char* key, const auto& value) {
+    if (value) text += fmt::format("{}: {}\n", key, *value);
+  };
+  set("radius", arguments.radius);
+  set("tube_length", arguments.tube_length);
+  set("seed", arguments.seed);
+  if (!arguments.method.empty() && arguments.method != "both") text += "method: " + arguments.method + "\n";
+  if (arguments.ratio) text += fmt::format("filtering: {{ratio: {}}}\n", *arguments.ratio);
+  if (!text.empty()) read_yaml_text(text, "command line", [&](Fields& fields) { describe(fields, config); });
+  return config;
+}
+
+int model_one(const Arguments& arguments) {
+  if (!arguments.ratios.empty() || arguments.method == "both" || arguments.keep_clouds || arguments.cases > 0)
+    throw_config_error("{} is a file: --ratios, --method both, --cases and --keep-clouds are for data sets",
+                       arguments.input);
+  ModelConfig config = resolve_config(arguments);
+  const CloudToModel input = read_cloud_to_model(arguments.input, arguments.scale);
+  const ModelingResult result = model_cloud(input, config);
+  std::error_code error;
+  fs::create_directories(arguments.output, error);
+  if (error) throw_io_error("{}: cannot be made: {}", arguments.output, error.message());
+  write_cloud(arguments.output + "/filtered.pcd", filtered_cloud(input.cloud, result), CloudFormat::pcd_binary);
+  write_cloud(arguments.output + "/labeled.pcd", labeled_cloud(input.cloud, result), CloudFormat::pcd_binary);
+  write_file_atomically(
+      arguments.output + "/model.json",
+      format_model_json(result, model_colors(result), [&](Fields& fields) { describe(fields, config); }, true));
+
+  const auto unlabeled = std::count(result.labels.begin(), result.labels.end(), Label{0});
+  fmt::print("{} tubes of radius {:.2f} mm in {} points, {} of them without a tube; {:.1f} ms\n", result.tubes.size(),
+             result.radius * 1e3, result.labels.size(), unlabeled, result.seconds.total() * 1e3);
+  for (std::size_t k = 0; k < result.tubes.size(); ++k)
+    fmt::print("tube {}: {} cylinders, {:.3f} m, {} points\n", k + 1, result.tubes[k].nodes.size() - 1,
+               result.tubes[k].length(),
+               std::count(result.labels.begin(), result.labels.end(), static_cast<Label>(k + 1)));
+  return static_cast<int>(ExitCode::done);
+}
+
+int model_many(const Arguments& arguments) {
+  if (arguments.scale != 1.0) throw_config_error("--scale is for single files; data sets are in metres");
+  if (arguments.ratio && !arguments.ratios.empty()) throw_config_error("--ratio and --ratios say the same: give one");
+  const ModelConfig config = resolve_config(arguments);
+  BatchOptions options{.dataset = arguments.input,
+                       .results = arguments.output,
+                       .methods = {config.modeling.method},
+                       .ratios = {config.modeling.filtering.ratio},
+                       .jobs = arguments.jobs,
+                       .cases = arguments.cases,
+                       .keep_clouds = arguments.keep_clouds};
+  if (arguments.method == "both") options.methods = {ModelingMethod::centerline, ModelingMethod::region_growing};
+  if (!arguments.ratios.empty()) options.ratios = parse_ratios(arguments.ratios);
+  const BatchReport report =
+      model_dataset(options, config, arguments.quiet ? Progress::Style::none : Progress::Style::automatic);
+  for (const std::string& failed : report.failed) fmt::print(stderr, "{}\n", failed);
+  if (report.signal != 0)
+    fmt::print(stderr, "Interrupted after {} of {} runs; they are kept. Run the same command again for the rest.\n",
+               report.complete_before + report.made, report.runs);
+  else
+    fmt::print("{}: {} runs, {} made in {:.1f} s, {} there before, {} failed\n", arguments.output, report.runs,
+               report.made, report.seconds, report.complete_before, report.failed.size());
+  if (report.signal != 0) return 128 + report.signal;
+  return static_cast<int>(report.failed.empty() ? ExitCode::done : ExitCode::incomplete);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Models tubes from point clouds: which tube each point belongs to, and the cylinders of each.");
+  app.footer(kExamples);
+  app.set_version_flag("--version", tool_version());
+  add_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+    return fs::is_directory(arguments.input) ? model_many(arguments) : model_one(arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+  } catch (const ConfigError& error) {
+    fmt::print(stderr, "model_tubes: {}\n", error.what());
+    return static_cast<int>(ExitCode::usage);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "model_tubes: {}\n", error.what());
+    return static_cast<int>(ExitCode::failed);
+  }
+}

@@ -1,0 +1,40 @@
+/// Modelling every cloud of a data set by several methods and at several ratios into a results folder
+/// (docs/results_format.md).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tubebin/dataset/model_cloud.hpp"
+#include "tubebin/dataset/progress.hpp"
+
+namespace tubebin {
+
+struct BatchOptions {
+  std::string dataset;
+  std::string results;
+  std::vector<ModelingMethod> methods = {ModelingMethod::centerline};
+  std::vector<double> ratios = {1.0};
+  int jobs = 1;
+  int cases = 0;               ///< of each set and number of tubes, the first ones; 0: all
+  double time_limit = 600.0;   ///< seconds a run
+  bool keep_clouds = false;
+};
+
+struct BatchReport {
+  std::size_t runs = 0;
+  std::size_t complete_before = 0;
+  std::size_t made = 0;
+  std::vector<std::string> failed;  ///< a line each
+  int signal = 0;                   ///< that ended it early, 0 if none did
+  double seconds = 0.0;
+};
+
+/// "0.1:1.0:0.1" (first, last, step) or "0.1,0.3,1". Throws ConfigError.
+std::vector<double> parse_ratios(const std::string& text);
+
+/// Does the runs that the results folder does not have yet. Throws IoError, and ConfigError where the folder holds
+/// results of another data set, other options or another seed.
+BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config, Progress::Style progress);
+
+}  // namespace tubebin

@@ -1,0 +1,18 @@
+/// Cylinder fitting of `--method centerline` (step 3 of the pipeline).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tubebin/modeling/filtering.hpp"
+#include "tubebin/modeling/tube_model.hpp"
+
+namespace tubebin {
+
+/// Fits consecutive cylinders of the known radius to a segment: its votes make a curve, the curve is cut where it
+/// bends, the nodes minimize the points' distances to the surface, and the ends grow as far as points show them, also
+/// those of `loose`, which no segment holds. Nothing results from a segment that is no stretch of a tube.
+std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Segment& segment, const Segment& loose,
+                                        double radius, const Vec3& viewpoint);
+
+}  // namespace tubebin

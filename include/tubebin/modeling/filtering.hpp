@@ -1,0 +1,54 @@
+/// Step 1 of the paper's Section 4: points of the bin go, a random part of the rest stays, with surface normals.
+#pragma once
+
+#include <vector>
+
+#include "tubebin/core/random.hpp"
+#include "tubebin/core/yaml.hpp"
+#include "tubebin/modeling/modeling_input.hpp"
+#include "tubebin/modeling/scan_view.hpp"
+
+namespace tubebin {
+
+struct FilteringOptions {
+  double ratio = 1.0;             ///< of the tube points that stay
+  double bin_margin = 0.002;      ///< metres; points closer to floor or walls go
+  bool remove_outliers = false;   ///< drop lone points, as real scanners make at edges
+};
+
+void describe(Fields& fields, FilteringOptions& options);
+
+/// The points that the later stages work on, in an order that their positions alone determine.
+struct FilteredCloud {
+  std::vector<std::uint32_t> source;  ///< index of each point in the input
+  std::vector<Point> points;          ///< metres, world frame
+  std::vector<Point> normals;         ///< unit, toward the viewpoint; zero where a point has too few neighbours
+  double spacing = 0.0;               ///< metres between neighbours: the root of the area that a point stands for
+};
+
+/// The filtered cloud: points of the bin go (find_bin_planes without a known bin), of the others a random part stays,
+/// and each gets its normal. `radius`: metres, 0 where it is not known. Throws IoError where no point is left.
+FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, const FilteringOptions& options,
+                     double radius, std::uint64_t seed);
+
+/// Radius of the neighbourhoods of normals, metres: large enough for some 25 points, which average the noise, and small
+/// enough that the surface is nearly flat.
+double normal_radius(double spacing, double radius);
+
+/// The projection of the scan: from the sensor toward what it saw.
+ViewProjection view_of(const ModelingInput& input);
+
+/// Indices of the points that do not belong to the known bin: all that are inside its walls or above its rim, farther
+/// than the margin from its floor and walls.
+std::vector<std::uint32_t> crop_bin(const ModelingInput& input, const FilteringOptions& options);
+
+/// Keeps round(ratio * count) of the indices, at least one of any. Which ones depends on the seed and the points'
+/// positions, not on their order.
+std::vector<std::uint32_t> downsample(std::span<const Point> points, std::vector<std::uint32_t> indices, double ratio,
+                                      std::uint64_t seed);
+
+/// Drops points with fewer than a third of the neighbours that their surroundings let expect.
+std::vector<std::uint32_t> remove_outliers(const ViewProjection& projection, std::span<const Point> points,
+                                           const std::vector<std::uint32_t>& indices);
+
+}  // namespace tubebin

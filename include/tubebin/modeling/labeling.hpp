@@ -1,0 +1,32 @@
+/// Labelling (step 5 of the pipeline): every point takes the nearest tube, if that is close enough.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tubebin/cloud/cloud.hpp"
+#include "tubebin/core/geometry.hpp"
+
+namespace tubebin {
+
+/// The surface of a tube along a polyline: flat-ended cylinders, and spheres at the inner nodes.
+struct TubeSurface {
+  std::span<const Vec3> nodes;
+  double radius = 0.0;
+};
+
+/// Distance of a point to the surface, metres; negative inside.
+double distance_to_surface(const TubeSurface& surface, const Vec3& point);
+
+struct NearestSurface {
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+  std::uint32_t surface = kNone;  ///< index of the nearest surface, kNone where none is within reach
+  float distance = 0.0f;          ///< to it, metres; negative inside
+};
+
+/// The nearest surface of every point, none where all are farther than `reach` metres.
+std::vector<NearestSurface> nearest_surfaces(std::span<const Point> points, const std::vector<TubeSurface>& surfaces,
+                                             double reach);
+
+}  // namespace tubebin

@@ -1,0 +1,20 @@
+/// What the modeler is given: positions and where they were seen from. Colours and labels have no place here, so it
+/// cannot peek at the ground truth.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "tubebin/cloud/cloud.hpp"
+#include "tubebin/scene/scene.hpp"
+
+namespace tubebin {
+
+struct ModelingInput {
+  std::span<const Point> points;           ///< metres, world frame; not finite where a pixel hit nothing
+  Pose world_from_sensor = Pose::Identity();  ///< sensor frame: z along the view
+  std::optional<Bin> bin;                  ///< the known bin; without it, floor and walls are found in the cloud
+  Pose world_from_bin = Pose::Identity();
+};
+
+}  // namespace tubebin

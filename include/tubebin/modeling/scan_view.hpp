@@ -1,0 +1,61 @@
+/// The scene as the scanner saw it: directions from the viewpoint as points of a plane, and the nearest range in each.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tubebin/cloud/cloud.hpp"
+
+namespace tubebin {
+
+/// Stereographic projection of the directions from a viewpoint: conformal, and defined for every direction but the
+/// one straight back, so that neighbours in space are neighbours in the plane whatever the field of view. Near the
+/// view axis, one unit of the plane is one radian.
+class ViewProjection {
+ public:
+  struct Image {
+    float u, v;    ///< position in the plane
+    float range;   ///< distance from the viewpoint, metres
+  };
+
+  /// The view axis is the sensor's z axis, or, where the points do not lie in front of it (a pose that states a
+  /// position alone), the direction to the middle of the points.
+  ViewProjection(const Pose& world_from_sensor, const Point& middle_of_points);
+
+  Image operator()(const Point& point_in_world) const {
+    const Point p = axes_from_world_ * (point_in_world - viewpoint_);
+    const float range = p.norm();
+    const float scale = 2.0f / std::max(range + p.z(), 1e-6f * range + 1e-12f);
+    return {p.x() * scale, p.y() * scale, range};
+  }
+  const Point& viewpoint() const { return viewpoint_; }
+
+ private:
+  Point viewpoint_;
+  Eigen::Matrix3f axes_from_world_;
+};
+
+/// Nearest measured range in every cell of the view.
+class RangeImage {
+ public:
+  /// `cell` is the cells' size in the plane of the projection; `selected` are indices into `points`.
+  RangeImage(const ViewProjection& projection, std::span<const Point> points, std::span<const std::uint32_t> selected,
+             float cell);
+
+  enum class Evidence {
+    hidden,   ///< the scanner measured something nearer: what is at the point cannot be seen
+    surface,  ///< the scanner measured a surface at the point, within the tolerance
+    empty     ///< the scanner saw through the point: nothing is there
+  };
+  /// What the scan says about a surface at `point`.
+  Evidence evidence(const Point& point, float tolerance) const;
+
+ private:
+  ViewProjection projection_;
+  float inverse_cell_;
+  float u_min_ = 0.0f, v_min_ = 0.0f;
+  int columns_ = 0, rows_ = 0;
+  std::vector<float> nearest_;  ///< infinity where nothing was measured
+};
+
+}  // namespace tubebin

@@ -1,0 +1,38 @@
+/// What the stages of both methods pass on, and what modeling results in.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tubebin/cloud/cloud.hpp"
+
+namespace tubebin {
+
+/// Indices of the filtered cloud's points that one segment (cluster) holds.
+using Segment = std::vector<std::uint32_t>;
+
+/// A stretch of a tube as fitted to one segment: consecutive cylinders along a polyline.
+struct TubePiece {
+  std::vector<Vec3> nodes;  ///< metres, world frame; at least two
+  double radius = 0.0;      ///< metres
+  Segment points;           ///< that it was fitted to
+
+  double length() const;
+};
+
+/// A tube: cylinders in a row, a joint between consecutive ones.
+struct TubeModel {
+  std::vector<Vec3> nodes;     ///< cylinder i reaches from nodes[i] to nodes[i + 1]; metres, world frame
+  std::vector<bool> bridged;   ///< of cylinder i: it spans a stretch without points, from one piece to the next
+  double radius = 0.0;         ///< metres
+
+  double length() const;
+};
+
+/// Sum of the distances of consecutive nodes, metres.
+double polyline_length(const std::vector<Vec3>& nodes);
+
+/// Distance of a point to the nearest place of a polyline, metres.
+double distance_to_polyline(const Vec3& point, const std::vector<Vec3>& nodes);
+
+}  // namespace tubebin

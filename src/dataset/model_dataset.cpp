@@ -1,0 +1,321 @@
+#include "tubebin/dataset/model_dataset.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/dataset/dataset_config.hpp"
+#include "tubebin/dataset/folder_lock.hpp"
+#include "tubebin/dataset/whole_folder.hpp"
+#include "tubebin/dataset/worker_pool.hpp"
+#include "tubebin/modeling/model_json.hpp"
+
+namespace tubebin {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+const char* name_of(ModelingMethod method) {
+  return method == ModelingMethod::centerline ? "centerline" : "region_growing";
+}
+
+/// One cloud by one method at one ratio.
+struct Run {
+  std::string scene;  ///< "A10/007"
+  std::string cloud;  ///< its file
+  ModelingMethod method = ModelingMethod::centerline;
+  double ratio = 1.0;
+
+  std::string folder() const { return fmt::format("{}/{}_{}", scene, name_of(method), ratio); }
+};
+
+struct SceneName {
+  std::string set;
+  std::size_t tubes = 0;
+  int case_number = 0;
+};
+
+/// "A10/007" is set A, ten tubes, case 7; of another name only the first folder is known.
+SceneName parse_scene_name(const std::string& scene) {
+  const std::size_t slash = scene.find('/');
+  const std::string first = scene.substr(0, slash);
+  const std::size_t digits = first.find_last_not_of("0123456789") + 1;
+  SceneName name{.set = first};
+  if (slash == std::string::npos || digits == 0 || digits == first.size()) return name;
+  const std::string rest = scene.substr(slash + 1);
+  int case_number = 0;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), case_number);
+  std::size_t tubes = 0;
+  const auto [tubes_end, tubes_error] = std::from_chars(first.data() + digits, first.data() + first.size(), tubes);
+  if (error != std::errc{} || end != rest.data() + rest.size() || tubes_error != std::errc{}) return name;
+  return {first.substr(0, digits), tubes, case_number};
+}
+
+/// Cloud files by scene name, scenes of fewer tubes first.
+std::vector<std::pair<std::string, std::string>> find_clouds(const BatchOptions& options) {
+  std::vector<std::pair<std::string, std::string>> clouds;
+  for (const auto& entry : fs::recursive_directory_iterator(options.dataset)) {
+    const fs::path path = entry.path();
+    const fs::path scene = fs::relative(path.parent_path(), options.dataset);
+    const bool is_hidden = scene.filename().string().starts_with('.') && scene != ".";
+    if ((path.filename() == "cloud.pcd" || path.filename() == "cloud.ply") && !is_hidden)
+      clouds.emplace_back(scene.string(), path.string());
+  }
+  if (clouds.empty()) throw_io_error("{}: holds no cloud.pcd or cloud.ply in any of its folders", options.dataset);
+  const auto key = [](const auto& cloud) {
+    const SceneName name = parse_scene_name(cloud.first);
+    return std::tuple(name.tubes, name.set, name.case_number, cloud.first);
+  };
+  std::sort(clouds.begin(), clouds.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  if (options.cases > 0) {
+    std::map<std::string, int> taken;
+    std::erase_if(clouds, [&](const auto& cloud) {
+      return ++taken[cloud.first.substr(0, cloud.first.find('/'))] > options.cases;
+    });
+  }
+  return clouds;
+}
+
+/// Both methods get the same seed, and so the same points.
+std::uint64_t run_seed(std::uint64_t seed, const Run& run) {
+  std::uint64_t mixed = derive_seed({seed, std::bit_cast<std::uint64_t>(run.ratio)});
+  for (const char c : run.scene) mixed = derive_seed({mixed, static_cast<std::uint64_t>(static_cast<unsigned char>(c))});
+  return mixed;
+}
+
+ModelConfig run_config(const ModelConfig& config, const Run& run) {
+  ModelConfig own = config;
+  own.modeling.method = run.method;
+  own.modeling.filtering.ratio = run.ratio;
+  own.modeling.seed = run_seed(config.modeling.seed, run);
+  return own;
+}
+
+/// Ground-truth label of every input point: its own, or the one whose colour scene.json says it has.
+std::vector<Label> truth_labels(const CloudToModel& input) {
+  if (!input.cloud.labels.empty()) return input.cloud.labels;
+  if (input.cloud.colors.empty() || !input.scene) return {};
+  std::map<Color, Label> label_of;
+  for (std::size_t k = 0; k < input.scene->colors.size(); ++k) label_of[input.scene->colors[k]] = static_cast<Label>(k);
+  std::vector<Label> labels;
+  for (const Color color : input.cloud.colors) {
+    const auto entry = label_of.find(color);
+    labels.push_back(entry == label_of.end() ? 0 : entry->second);
+  }
+  return labels;
+}
+
+void add_contingency(Json& json, const CloudToModel& input, const ModelingResult& result) {
+  const std::vector<Label> truth = truth_labels(input);
+  if (truth.empty()) return;
+  std::map<std::pair<Label, Label>, std::size_t> counts;
+  std::map<Label, std::size_t> truth_points;
+  if (input.scene)
+    for (Label k = 0; k <= input.scene->scene.tubes.size(); ++k) truth_points[k] = 0;
+  for (std::size_t k = 0; k < result.source.size(); ++k) {
+    const Label label = truth[result.source[k]];
+    ++counts[{label, result.labels[k]}];
+    ++truth_points[label];
+  }
+  json["truth_labels"] = Json::array();
+  json["truth_points"] = Json::array();
+  for (const auto& [label, points] : truth_points) {
+    json["truth_labels"].push_back(label);
+    json["truth_points"].push_back(points);
+  }
+  json["contingency"] = Json::array();
+  for (const auto& [pair, points] : counts) json["contingency"].push_back({pair.first, pair.second, points});
+}
+
+std::string format_result(const Run& run, const CloudToModel& input, const ModelingResult& result, std::uint64_t seed) {
+  const SceneName name = parse_scene_name(run.scene);
+  const std::size_t tubes = input.scene ? input.scene->scene.tubes.size() : name.tubes;
+  const auto unlabeled = std::count(result.labels.begin(), result.labels.end(), Label{0});
+  Json json = {{"format", "tubebin result 1"},
+               {"scene", run.scene},
+               {"set", name.set},
+               {"tubes", tubes},
+               {"case", name.case_number},
+               {"method", name_of(run.method)},
+               {"ratio", run.ratio},
+               {"seed", seed},
+               {"cloud_points", std::count_if(input.cloud.points.begin(), input.cloud.points.end(), is_finite)},
+               {"filtered_points", result.labels.size()},
+               {"labeled_points", result.labels.size() - static_cast<std::size_t>(unlabeled)},
+               {"model_tubes", result.tubes.size()}};
+  add_contingency(json, input, result);
+  return json.dump() + "\n";
+}
+
+/// In a worker process.
+AttemptResult do_run(const Run& run, const BatchOptions& options, const ModelConfig& config) {
+  CloudToModel input;
+  ModelingResult result;
+  ModelConfig own = run_config(config, run);
+  try {
+    input = read_cloud_to_model(run.cloud);
+    result = model_cloud(input, own);
+  } catch (const IoError& error) {
+    return {false, "unreadable", error.what()};  // this cloud's fault: the others go on
+  }
+  std::map<std::string, std::string> files;
+  files["model.json"] = format_model_json(
+      result, model_colors(result), [&](Fields& fields) { describe(fields, own); }, false);
+  files["times.json"] = format_times_json(result.seconds, input.read_seconds);
+  files["result.json"] = format_result(run, input, result, own.modeling.seed);
+  if (options.keep_clouds) {
+    files["filtered.pcd"] = format_cloud(filtered_cloud(input.cloud, result), CloudFormat::pcd_compressed);
+    files["labeled.pcd"] = format_cloud(labeled_cloud(input.cloud, result), CloudFormat::pcd_compressed);
+  }
+  write_whole_folder(options.results + "/" + run.folder(), files);
+  return {true, "", ""};
+}
+
+std::string format_index(const BatchOptions& options, const ModelConfig& config,
+                         const std::vector<std::pair<std::string, std::string>>& clouds) {
+  Json scenes = Json::array(), methods = Json::array();
+  for (const auto& [scene, path] : clouds) scenes.push_back(scene);
+  for (const ModelingMethod method : options.methods) methods.push_back(name_of(method));
+  ModelConfig described = config;
+  return Json{{"format", "tubebin results 1"},
+              {"tool_version", tool_version()},
+              {"dataset", fs::relative(fs::absolute(options.dataset), fs::absolute(options.results)).string()},
+              {"methods", methods},
+              {"ratios", options.ratios},
+              {"seed", config.modeling.seed},
+              {"scenes", scenes},
+              {"options", Json::parse(format_options_json([&](Fields& fields) { describe(fields, described); }))}}
+             .dump(1) +
+         "\n";
+}
+
+/// Adds methods, ratios and scenes that the folder holds already; what the runs depend on must be the same.
+std::string merge_index(const std::string& path, const std::string& wanted_text) {
+  if (!fs::exists(path)) return wanted_text;
+  Json wanted = Json::parse(wanted_text);
+  Json held;
+  try {
+    held = Json::parse(read_file(path));
+    const auto without_run = [](Json options) {  // each run has its own method, ratio and seed
+      options.erase("method");
+      options["filtering"].erase("ratio");
+      return options;
+    };
+    for (const char* key : {"format", "tool_version", "dataset", "seed", "options"}) {
+      const bool is_options = std::string_view(key) == "options";
+      const Json a = is_options ? without_run(held.at(key)) : held.at(key);
+      const Json b = is_options ? without_run(wanted.at(key)) : wanted.at(key);
+      if (a != b)
+        throw_config_error("{}: these results were made with {} = {}, not {}; choose another --output", path, key,
+                           a.dump(), b.dump());
+    }
+    for (const char* key : {"methods", "ratios", "scenes"})
+      for (const Json& value : held.at(key))
+        if (std::find(wanted[key].begin(), wanted[key].end(), value) == wanted[key].end()) wanted[key].push_back(value);
+    std::sort(wanted["ratios"].begin(), wanted["ratios"].end());
+  } catch (const Json::exception& error) {
+    throw_io_error("{}: is no index of results: {}", path, error.what());
+  }
+  return wanted.dump(1) + "\n";
+}
+
+std::vector<Run> list_runs(const BatchOptions& options, const std::vector<std::pair<std::string, std::string>>& clouds) {
+  std::vector<Run> runs;
+  for (const auto& [scene, path] : clouds)
+    for (const ModelingMethod method : options.methods)
+      for (const double ratio : options.ratios) runs.push_back({scene, path, method, ratio});
+  return runs;
+}
+
+double parse_ratio(std::string_view text, const std::string& all) {
+  double ratio = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ratio);
+  if (error != std::errc{} || end != text.data() + text.size() || !(ratio > 0.0 && ratio <= 1.0))
+    throw_config_error("--ratios {}: '{}' is no ratio above 0 and up to 1; write 0.1,0.3,1 or 0.1:1.0:0.1", all, text);
+  return ratio;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, start), text.size());
+    parts.push_back(text.substr(start, end - start));
+    start = end + 1;
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<double> parse_ratios(const std::string& text) {
+  std::vector<double> ratios;
+  if (text.find(':') == std::string::npos) {
+    for (const std::string_view part : split(text, ',')) ratios.push_back(parse_ratio(part, text));
+    return ratios;
+  }
+  const auto parts = split(text, ':');
+  if (parts.size() != 3) throw_config_error("--ratios {}: a range is first:last:step, as 0.1:1.0:0.1", text);
+  const double first = parse_ratio(parts[0], text), last = parse_ratio(parts[1], text),
+               step = parse_ratio(parts[2], text);
+  // Decimal steps, not their binary sums: 0.3, not 0.30000000000000004.
+  for (int k = 0; first + k * step <= last + 1e-9; ++k)
+    ratios.push_back(std::round((first + k * step) * 1e9) / 1e9);
+  if (ratios.empty()) throw_config_error("--ratios {}: the first is above the last", text);
+  return ratios;
+}
+
+BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config, Progress::Style progress_style) try {
+  const auto start = std::chrono::steady_clock::now();
+  const auto clouds = find_clouds(options);
+  fs::create_directories(options.results);
+  const FolderLock lock(options.results);
+  const std::string index = options.results + "/index.json";
+  write_file_atomically(index, merge_index(index, format_index(options, config, clouds)));
+
+  const std::vector<Run> runs = list_runs(options, clouds);
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (!fs::exists(options.results + "/" + runs[i].folder())) missing.push_back(i);
+
+  BatchReport report{.runs = runs.size(), .complete_before = runs.size() - missing.size(), .failed = {}};
+  Progress progress(missing.size(), "clouds", progress_style);
+  std::string failures;
+  const PoolEvents events{.on_finished =
+                              [&](const JobOutcome& outcome) {
+                                progress.count_done();
+                                if (outcome.succeeded) return;
+                                const Run& run = runs[outcome.job];
+                                const FailedAttempt& last = outcome.failed.back();
+                                const std::string why = last.detail.empty() ? last.reason : last.detail;
+                                report.failed.push_back(fmt::format("{}: {}", run.folder(), why));
+                                failures += Json{{"scene", run.scene},
+                                                 {"method", name_of(run.method)},
+                                                 {"ratio", run.ratio},
+                                                 {"error", why}}
+                                                .dump() +
+                                            "\n";
+                              },
+                          .on_tick = [&] { progress.show(); }};
+  const PoolOptions pool_options{.workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit};
+  const PoolReport pool = run_jobs(
+      missing, pool_options, [&](std::size_t job, int) { return do_run(runs[job], options, config); }, events);
+  const std::string failures_path = options.results + "/failures.jsonl";
+  if (!failures.empty()) write_file_atomically(failures_path, failures);
+  else fs::remove(failures_path);
+  report.made = pool.succeeded;
+  report.signal = pool.signal;
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+} catch (const fs::filesystem_error& error) {
+  throw_io_error("{}", error.what());
+}
+
+}  // namespace tubebin

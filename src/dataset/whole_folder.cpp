@@ -1,0 +1,105 @@
+#include "tubebin/dataset/whole_folder.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+#include "file_descriptor.hpp"
+#include "tubebin/core/error.hpp"
+
+namespace tubebin {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kUnfinishedSuffix = ".partial";
+
+/// "DIR/A10/.007.partial": a hidden sibling, so that the rename stays within one folder.
+fs::path unfinished_path(const fs::path& scene) {
+  return scene.parent_path() / fmt::format(".{}{}", scene.filename().string(), kUnfinishedSuffix);
+}
+
+void sync_folder(const fs::path& path) {
+  const FileDescriptor folder(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  // Some file systems can't sync folders; there a rename is as safe as they make it.
+  if (folder.get() < 0 || (fsync(folder.get()) != 0 && errno != EINVAL && errno != ENOTSUP))
+    throw_io_error("{}: cannot be synced: {}", path.string(), std::strerror(errno));
+}
+
+/// A new folder that is gone at the end of the scope unless it was renamed.
+class UnfinishedFolder {
+ public:
+  explicit UnfinishedFolder(fs::path scene) : scene_(std::move(scene)), path_(unfinished_path(scene_)) {
+    if (fs::create_directories(scene_.parent_path())) sync_folder(scene_.parent_path().parent_path());
+    fs::remove_all(path_);
+    fs::create_directory(path_);
+  }
+  ~UnfinishedFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  UnfinishedFolder(const UnfinishedFolder&) = delete;
+  UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
+
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+  void rename_to_final() const {
+    sync_folder(path_);
+    fs::remove_all(scene_);
+    fs::rename(path_, scene_);
+    sync_folder(scene_.parent_path());
+  }
+
+ private:
+  fs::path scene_;
+  fs::path path_;
+};
+
+/// A new file whose bytes are on their way to the disk, and there after sync().
+class NewFile {
+ public:
+  NewFile(std::string path, std::string_view bytes)
+      : path_(std::move(path)), file_(open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+    if (file_.get() < 0) fail();
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(file_.get(), bytes.data(), bytes.size());
+      if (written < 0 && errno != EINTR) fail();
+      if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    sync_file_range(file_.get(), 0, 0, SYNC_FILE_RANGE_WRITE);  // only begins; what fails shows in sync()
+  }
+  void sync() const {
+    if (fsync(file_.get()) != 0) fail();
+  }
+
+ private:
+  [[noreturn]] void fail() const { throw_io_error("{}: cannot be written: {}", path_, std::strerror(errno)); }
+
+  std::string path_;
+  FileDescriptor file_;
+};
+
+}  // namespace
+
+void write_whole_folder(const std::string& path, const std::map<std::string, std::string>& files,
+                        const std::function<void()>& meanwhile) try {
+  const UnfinishedFolder folder(path);
+  std::vector<NewFile> written;
+  for (const auto& [name, bytes] : files) written.emplace_back(folder.file(name), bytes);
+  meanwhile();
+  for (const NewFile& file : written) file.sync();
+  folder.rename_to_final();
+} catch (const fs::filesystem_error& error) {
+  throw_io_error("{}: cannot be written: {}", path, error.code().message());
+}
+
+bool is_unfinished_folder(const std::string& path) {
+  const std::string name = fs::path(path).filename().string();
+  return name.starts_with('.') && name.ends_with(kUnfinishedSuffix);
+}
+
+}  // namespace tubebin

@@ -1,0 +1,257 @@
+#include "tubebin/modeling/centerline_fitting.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "tubebin/modeling/surface_fitting.hpp"
+#include "tubebin/modeling/vote_voxels.hpp"
+
+namespace tubebin {
+namespace {
+
+/// A surface point and where it puts the centreline.
+struct Vote {
+  Vec3 point;
+  Vec3 normal;
+  Vec3 center;
+  std::size_t sample = 0;  ///< nearest sample of the curve
+  double arclength = 0.0;  ///< along the curve, metres
+};
+
+std::vector<double> geodesic_distances(const VoteVoxels& voxels, const std::vector<std::vector<std::uint32_t>>& linked,
+                                       std::uint32_t from) {
+  std::vector<double> distance(voxels.size(), std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, std::uint32_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  distance[from] = 0.0;
+  queue.emplace(0.0, from);
+  while (!queue.empty()) {
+    const auto [d, i] = queue.top();
+    queue.pop();
+    if (d > distance[i]) continue;
+    for (const std::uint32_t j : linked[i]) {
+      const double through = d + double((voxels.mean(i) - voxels.mean(j)).norm());
+      if (through >= distance[j]) continue;
+      distance[j] = through;
+      queue.emplace(through, j);
+    }
+  }
+  return distance;
+}
+
+/// The farthest reachable voxel.
+std::uint32_t farthest(const std::vector<double>& distance) {
+  std::uint32_t best = 0;
+  for (std::uint32_t i = 0; i < distance.size(); ++i)
+    if (std::isfinite(distance[i]) && !(distance[i] <= distance[best])) best = i;
+  return best;
+}
+
+/// Mean votes at equal geodesic distance from one end: the level sets' centres are a first skeleton (Verroust and
+/// Lazarus 2000, "Extracting skeletal curves from 3D scattered data").
+std::vector<Vec3> level_set_skeleton(const std::vector<Vote>& votes, double radius) {
+  std::vector<Point> centers;
+  for (const Vote& vote : votes) centers.push_back(vote.center.cast<float>());
+  const double step = radius / 3.0;
+  const VoteVoxels voxels(centers, step, 1);
+  std::vector<std::vector<std::uint32_t>> linked(voxels.size());
+  for (const auto& [a, b] : voxels.links(radius / 2.0)) {
+    linked[a].push_back(b);
+    linked[b].push_back(a);
+  }
+  const std::uint32_t end = farthest(geodesic_distances(voxels, linked, 0));
+  const std::vector<double> distance = geodesic_distances(voxels, linked, end);
+
+  std::vector<Vec3> sums;
+  std::vector<double> counts;
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    if (!std::isfinite(distance[i])) continue;
+    const auto level = static_cast<std::size_t>(distance[i] / step);
+    if (level >= sums.size()) {
+      sums.resize(level + 1, Vec3::Zero());
+      counts.resize(level + 1, 0.0);
+    }
+    const auto weight = static_cast<double>(voxels.count(i));
+    sums[level] += weight * voxels.mean(i).cast<double>();
+    counts[level] += weight;
+  }
+  std::vector<Vec3> skeleton;
+  for (std::size_t level = 0; level < sums.size(); ++level)
+    if (counts[level] > 0.0) skeleton.push_back(sums[level] / counts[level]);
+  return skeleton;
+}
+
+Vec3 tangent(const std::vector<Vec3>& curve, std::size_t i) {
+  const std::size_t before = i == 0 ? 0 : i - 1;
+  const std::size_t after = std::min(i + 1, curve.size() - 1);
+  return (curve[after] - curve[before]).normalized();
+}
+
+/// Finds each vote's place along the curve.
+void place_along(const std::vector<Vec3>& curve, std::vector<Vote>& votes) {
+  std::vector<double> arclength = {0.0};
+  for (std::size_t i = 1; i < curve.size(); ++i) arclength.push_back(arclength.back() + (curve[i] - curve[i - 1]).norm());
+  for (Vote& vote : votes) {
+    vote.sample = 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+      const double squared = (vote.center - curve[i]).squaredNorm();
+      if (squared < nearest) nearest = squared, vote.sample = i;
+    }
+    vote.arclength = arclength[vote.sample] + (vote.center - curve[vote.sample]).dot(tangent(curve, vote.sample));
+  }
+}
+
+/// Mean votes in steps along the curve. A vote counts if its normal stands across the tube (within 30 degrees; those
+/// of a flat end do not) and it lies within half a radius of the curve.
+std::vector<Vec3> smooth(const std::vector<Vec3>& curve, std::vector<Vote>& votes, double step, double radius) {
+  place_along(curve, votes);
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (const Vote& vote : votes) first = std::min(first, vote.arclength), last = std::max(last, vote.arclength);
+  struct Mean {
+    Vec3 sum = Vec3::Zero();
+    double count = 0.0;
+  };
+  std::vector<Mean> means(static_cast<std::size_t>((last - first) / step) + 1);
+  for (const Vote& vote : votes) {
+    const Vec3 along = tangent(curve, vote.sample);
+    const Vec3 offset = vote.center - curve[vote.sample];
+    if (std::abs(vote.normal.dot(along)) > 0.5 || (offset - offset.dot(along) * along).norm() > radius / 2.0) continue;
+    Mean& mean = means[static_cast<std::size_t>((vote.arclength - first) / step)];
+    mean.sum += vote.center;
+    mean.count += 1.0;
+  }
+  std::vector<Vec3> result;
+  for (const Mean& mean : means)
+    if (mean.count > 0.0) result.push_back(mean.sum / mean.count);
+  return result;
+}
+
+/// Ramer-Douglas-Peucker: the fewest corners that leave no sample farther than `tolerance` from the chords.
+void simplify(const std::vector<Vec3>& curve, std::size_t first, std::size_t last, double tolerance,
+              std::vector<Vec3>& nodes) {
+  const Vec3 chord = (curve[last] - curve[first]).normalized();
+  std::size_t corner = first;
+  double farthest_off = tolerance;
+  for (std::size_t i = first + 1; i < last; ++i) {
+    const Vec3 offset = curve[i] - curve[first];
+    const double off = (offset - offset.dot(chord) * chord).norm();
+    if (off > farthest_off) farthest_off = off, corner = i;
+  }
+  if (corner == first) {
+    nodes.push_back(curve[last]);
+    return;
+  }
+  simplify(curve, first, corner, tolerance, nodes);
+  simplify(curve, corner, last, tolerance, nodes);
+}
+
+/// A stretch too short to show its direction as a curve gets it from its normals: two of a side span a plane across
+/// the axis. Of the axes of many pairs the one that most votes agree on wins, whatever else is there (a flat end).
+/// Half a radius about the middle of what agrees is enough to grow from.
+std::vector<Vec3> axis_from_normals(const std::vector<Vote>& votes, double radius) {
+  constexpr std::size_t kPairs = 64, kSample = 128;
+  const std::size_t stride = votes.size() / kSample + 1;
+  Vec3 best_axis = Vec3::UnitX(), best_center = votes.front().center;
+  std::size_t best_count = 0;
+  for (std::size_t k = 0; k < kPairs; ++k) {
+    // Steps of the golden ratio spread the pairs over the votes.
+    const auto pick = [&](double shift) {
+      const double place = std::fmod(0.6180339887 * static_cast<double>(k) + shift, 1.0);
+      return votes[static_cast<std::size_t>(place * static_cast<double>(votes.size()))];
+    };
+    const Vote first = pick(0.0), second = pick(0.31 + 0.37 * static_cast<double>(k % 2));
+    const Vec3 across = first.normal.cross(second.normal);
+    if (across.norm() < 0.2) continue;  // 12 degrees: their cross product is mostly noise
+    const Vec3 axis = across.normalized();
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < votes.size(); i += stride) {
+      const Vec3 offset = votes[i].center - first.center;
+      if (std::abs(votes[i].normal.dot(axis)) < 0.3 && (offset - offset.dot(axis) * axis).norm() < radius / 4.0) ++count;
+    }
+    if (count > best_count) best_count = count, best_axis = axis, best_center = first.center;
+  }
+  Vec3 sum = Vec3::Zero();
+  double count = 0.0;
+  for (const Vote& vote : votes) {
+    const Vec3 offset = vote.center - best_center;
+    if (std::abs(vote.normal.dot(best_axis)) > 0.3 ||
+        (offset - offset.dot(best_axis) * best_axis).norm() > radius / 4.0)
+      continue;
+    sum += vote.center;
+    count += 1.0;
+  }
+  const Vec3 middle = count > 0.0 ? Vec3(sum / count) : best_center;
+  return {middle - radius / 4.0 * best_axis, middle + radius / 4.0 * best_axis};
+}
+
+/// The curve without what lies within `cut` of its ends, where the votes of a flat end bend the skeleton aside.
+std::vector<Vec3> trim(const std::vector<Vec3>& curve, double cut) {
+  const double length = polyline_length(curve);
+  std::vector<Vec3> middle;
+  double arclength = 0.0;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    if (i > 0) arclength += (curve[i] - curve[i - 1]).norm();
+    if (arclength >= cut && arclength <= length - cut) middle.push_back(curve[i]);
+  }
+  return middle;
+}
+
+/// A joint's sphere would bulge out of a flat end nearer than a radius.
+void drop_joints_at_ends(std::vector<Vec3>& nodes, double radius) {
+  while (nodes.size() > 2 && (nodes[1] - nodes[0]).norm() < radius) nodes.erase(nodes.begin() + 1);
+  while (nodes.size() > 2 && (nodes[nodes.size() - 2] - nodes.back()).norm() < radius) nodes.erase(nodes.end() - 2);
+}
+
+}  // namespace
+
+std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Segment& segment, const Segment& loose,
+                                        double radius, const Vec3& viewpoint) {
+  std::vector<Vote> votes;
+  votes.reserve(segment.size());
+  for (const std::uint32_t i : segment) {
+    const Vec3 p = cloud.points[i].cast<double>(), n = cloud.normals[i].cast<double>();
+    votes.push_back({.point = p, .normal = n, .center = p - radius * n});
+  }
+  std::vector<Vec3> curve = level_set_skeleton(votes, radius);
+  if (curve.size() >= 3) curve = smooth(curve, votes, radius / 3.0, radius);
+  if (curve.size() >= 3) curve = smooth(curve, votes, radius / 3.0, radius);
+  curve = trim(curve, 1.5 * radius);
+
+  TubePiece piece{.nodes = {}, .radius = radius, .points = segment};
+  if (curve.size() < 2 || polyline_length(curve) < 2.0 * radius) {
+    piece.nodes = axis_from_normals(votes, radius);
+  } else {
+    piece.nodes = {curve.front()};
+    // A bend shows as an offset from the chord; r / 20 is what the means of some ten votes, each off by r / 6, are
+    // good for.
+    simplify(curve, 0, curve.size() - 1, radius / 20.0, piece.nodes);
+  }
+  // A thousand points determine a piece as well as all would: its nodes' error falls below a hundredth of the noise.
+  std::vector<SurfacePoint> surface;
+  const std::size_t stride = votes.size() / 1000 + 1;
+  for (std::size_t i = 0; i < votes.size(); i += stride) surface.push_back({votes[i].point, votes[i].normal});
+  if (fit_surface(piece.nodes, surface, radius).sigma > radius / 4.0) return std::nullopt;
+
+  std::vector<SurfacePoint> all;
+  for (const Vote& vote : votes) all.push_back({vote.point, vote.normal});
+  for (const std::uint32_t i : loose) all.push_back({cloud.points[i].cast<double>(), cloud.normals[i].cast<double>()});
+  grow_end(piece.nodes, all, radius, cloud.spacing, viewpoint);
+  std::reverse(piece.nodes.begin(), piece.nodes.end());
+  grow_end(piece.nodes, all, radius, cloud.spacing, viewpoint);
+  // Twice: a corner that the first nodes cut is found when they have moved.
+  for (int round = 0; round < 2; ++round) {
+    std::vector<Vec3> nodes = {piece.nodes.front()};
+    simplify(piece.nodes, 0, piece.nodes.size() - 1, radius / 50.0, nodes);
+    drop_joints_at_ends(nodes, radius);
+    piece.nodes = std::move(nodes);
+    fit_surface(piece.nodes, surface, radius);
+  }
+  if (piece.length() < radius / 2.0) return std::nullopt;
+  return piece;
+}
+
+}  // namespace tubebin

@@ -1,0 +1,181 @@
+#include "tubebin/modeling/join_candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tubebin {
+namespace {
+
+/// A join is ruled out where the scan is e^12 times likelier without it.
+constexpr double kCostLimit = 12.0;
+/// log of how seldom (1 in 100) a place that a tube takes up is measured as empty: at silhouettes, by a bend of the
+/// hidden stretch.
+constexpr double kEmptyCost = 4.6;
+
+Vec3 hermite(const PieceEnd& a, const PieceEnd& b, double gap, double t) {
+  const double t2 = t * t, t3 = t2 * t;
+  return (2 * t3 - 3 * t2 + 1) * a.position + (t3 - 2 * t2 + t) * gap * a.outward + (3 * t2 - 2 * t3) * b.position -
+         (t3 - t2) * gap * b.outward;
+}
+
+/// The bridge of least bending energy between two ends, to first order: the cubic that leaves and arrives along them.
+std::vector<Vec3> bridge_between(const PieceEnd& a, const PieceEnd& b, double radius) {
+  const double gap = (b.position - a.position).norm();
+  const int steps = std::max(2, static_cast<int>(std::ceil(gap / (radius / 2.0))));
+  std::vector<Vec3> bridge;
+  for (int i = 0; i <= steps; ++i) bridge.push_back(hermite(a, b, gap, double(i) / steps));
+  return bridge;
+}
+
+/// The angle between two unit vectors, as a vector across the first.
+Vec3 angle_vector(const Vec3& from, const Vec3& to) {
+  const Vec3 across = to - to.dot(from) * from;
+  const double sine = across.norm();
+  return sine < 1e-12 ? Vec3(Vec3::Zero()) : Vec3(across / sine * std::atan2(sine, to.dot(from)));
+}
+
+/// -log of the likelihood ratio of "the tube goes on from a to b" to "b is some other tube's end".
+/// A tube's direction walks at random along it with variance q a metre and axis. Its place and direction after a
+/// length D are then normal with covariance [q D^3 / 3, q D^2 / 2; q D^2 / 2, q D] an axis, of determinant q^2 D^4 / 12,
+/// and the exponent is the bending energy 4 (a^2 + a b + b^2) / D of the cubic that leaves the chord at angle a and
+/// arrives at angle b, over 2 q. Another tube's end lies anywhere with the ends' density and points anywhere.
+double shape_cost(const PieceEnd& a, const PieceEnd& b, double bending_rate, double radius, double end_density) {
+  const Vec3 chord = b.position - a.position;
+  const double length = std::max(chord.norm(), radius);
+  // Where the ends overlap or all but touch, their chord has no direction of its own.
+  const Vec3 along = chord.norm() > radius / 2.0 ? chord.normalized() : (a.outward - b.outward).normalized();
+  const Vec3 leave = angle_vector(along, a.outward);
+  const Vec3 arrive = angle_vector(along, -b.outward);
+  const double energy = 4.0 * (leave.squaredNorm() + leave.dot(arrive) + arrive.squaredNorm()) / length;
+  const double rate = bending_rate + (a.direction_variance + b.direction_variance) / length;
+  const double determinant = rate * rate * std::pow(length, 4) / 12.0;
+  // Tubes bend at joints, seldom but at once: tails as of Student's t with 3 degrees of freedom, in 4 dimensions
+  // (leaving and arriving, two axes each), log norm Gamma(7/2) / (Gamma(3/2) (3 pi)^2).
+  constexpr double kLogNorm = -3.165;
+  const double join = 3.5 * std::log1p(energy / (3.0 * rate)) - kLogNorm + std::log(determinant);
+  // The bridge ends where the tube comes to light again: some radii on, as wide as occluders are.
+  const double unseen = std::log(4.0 * radius);
+  const double other = -std::log(end_density / (4.0 * std::numbers::pi));
+  return join + unseen - other;
+}
+
+/// Two tubes cannot occupy one place: how far the bridge comes nearer than two radii to another piece's centreline,
+/// against how well its course is known (between its ends, the random walk's deviation q D^3 / 192 at the middle).
+double collision_cost(const std::vector<Vec3>& bridge, const std::vector<TubePiece>& pieces, std::size_t piece_a,
+                      std::size_t piece_b, double bending_rate) {
+  const double gap = (bridge.back() - bridge.front()).norm();
+  double cost = 0.0;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    if (k == piece_a || k == piece_b || is_fragment(pieces[k])) continue;
+    const double radius = pieces[k].radius;
+    double deepest = 0.0;
+    for (const Vec3& p : bridge) deepest = std::max(deepest, 2.0 * radius - distance_to_polyline(p, pieces[k].nodes));
+    const double sigma = std::hypot(0.2 * radius, std::sqrt(bending_rate * gap * gap * gap / 192.0));
+    cost += 0.5 * deepest * deepest / (sigma * sigma);
+    if (cost > kCostLimit) break;
+  }
+  return cost;
+}
+
+/// The fragments that the bridge, or the pieces beside it, run through: bits of the same tube's surface.
+std::vector<std::uint32_t> absorbed_fragments(const std::vector<Vec3>& bridge, const PieceEnd& a, const PieceEnd& b,
+                                              const std::vector<TubePiece>& pieces, std::size_t piece_a,
+                                              std::size_t piece_b) {
+  const double radius = pieces[piece_a].radius;
+  std::vector<Vec3> course = {bridge.front() - radius * a.outward};
+  course.insert(course.end(), bridge.begin(), bridge.end());
+  course.push_back(bridge.back() - radius * b.outward);
+  std::vector<std::uint32_t> absorbed;
+  for (std::uint32_t k = 0; k < pieces.size(); ++k) {
+    if (k == piece_a || k == piece_b || !is_fragment(pieces[k])) continue;
+    const Vec3 middle = 0.5 * (pieces[k].nodes.front() + pieces[k].nodes.back());
+    if (distance_to_polyline(middle, course) < radius / 2.0) absorbed.push_back(k);
+  }
+  return absorbed;
+}
+
+double bounding_volume(const std::vector<PieceEnd>& ends, double radius) {
+  Eigen::AlignedBox3d box;
+  for (const PieceEnd& end : ends) box.extend(end.position);
+  return (box.sizes().array() + 2.0 * radius).prod();
+}
+
+}  // namespace
+
+bool is_fragment(const TubePiece& piece) { return piece.length() < 2.0 * piece.radius; }
+
+double estimate_bending_rate(const std::vector<TubePiece>& pieces, double radius) {
+  double squares = 0.0, length = 0.0;
+  for (const TubePiece& piece : pieces) {
+    if (piece.length() < 4.0 * radius) continue;
+    length += piece.length();
+    for (std::size_t k = 1; k + 1 < piece.nodes.size(); ++k) {
+      const Vec3 before = (piece.nodes[k] - piece.nodes[k - 1]).normalized();
+      const Vec3 after = (piece.nodes[k + 1] - piece.nodes[k]).normalized();
+      squares += angle_vector(before, after).squaredNorm();
+    }
+  }
+  // Tubes that look straight may still bend by two degrees a diameter: the limit of what short pieces tell.
+  const double least = radians(2.0) * radians(2.0) / (2.0 * radius);
+  return length > 0.0 ? std::max(squares / length / 2.0, least) : least;
+}
+
+std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion,
+                                      double reach_limit) {
+  std::vector<PieceEnd> ends;
+  for (const TubePiece& piece : pieces) {
+    const auto& n = piece.nodes;
+    for (const auto& [tip, inner] : {std::pair(n.front(), n[1]), std::pair(n.back(), n[n.size() - 2])}) {
+      PieceEnd end{.position = tip, .outward = (tip - inner).normalized()};
+      // A cylinder of length l fitted to points with errors of about r / 20 (the curve's tolerance) points that much
+      // over l astray.
+      const double astray = piece.radius / 10.0 / std::max((tip - inner).norm(), piece.radius / 2.0);
+      end.direction_variance = 2.0 * astray * astray;
+      StretchEvidence beyond;
+      for (const double reach : {0.5, 0.75, 1.0}) {
+        const StretchEvidence e = occlusion.around(end.position + reach * piece.radius * end.outward, end.outward);
+        beyond.empty += e.empty / 3.0, beyond.hidden += e.hidden / 3.0, beyond.surface += e.surface / 3.0;
+      }
+      end.seen_free = beyond.empty;
+      end.hidden_reach = occlusion.hidden_reach(end.position, end.outward, reach_limit);
+      ends.push_back(end);
+    }
+  }
+  return ends;
+}
+
+std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces,
+                                                const std::vector<PieceEnd>& ends, const OcclusionTest& occlusion,
+                                                double bending_rate, double length_limit) {
+  std::vector<JoinCandidate> candidates;
+  if (pieces.empty()) return candidates;
+  const double radius = pieces.front().radius;
+  const double density = static_cast<double>(ends.size()) / bounding_volume(ends, radius);
+  std::vector<double> lengths;
+  for (const TubePiece& piece : pieces) lengths.push_back(piece.length());
+  for (std::uint32_t a = 0; a < ends.size(); ++a)
+    for (std::uint32_t b = a + 1; b < ends.size(); ++b) {
+      if (a / 2 == b / 2) continue;
+      const double gap = (ends[b].position - ends[a].position).norm();
+      if (lengths[a / 2] + lengths[b / 2] + gap > length_limit) continue;
+      double cost = shape_cost(ends[a], ends[b], bending_rate, radius, density);
+      cost += kEmptyCost * (ends[a].seen_free + ends[b].seen_free);
+      if (!(cost < kCostLimit)) continue;
+      auto bridge = bridge_between(ends[a], ends[b], radius);
+      // Neighbouring samples, half a radius apart, say much the same: a diameter's worth counts once.
+      const StretchEvidence seen = occlusion.along(bridge);
+      cost += kEmptyCost * seen.empty * std::max(gap / (2.0 * radius), 1.0);
+      if (!(cost < kCostLimit)) continue;
+      cost += collision_cost(bridge, pieces, a / 2, b / 2, bending_rate);
+      if (!(cost < kCostLimit)) continue;
+      auto absorbed = absorbed_fragments(bridge, ends[a], ends[b], pieces, a / 2, b / 2);
+      candidates.push_back(
+          {.end_a = a, .end_b = b, .cost = cost, .bridge = std::move(bridge), .absorbed = std::move(absorbed)});
+    }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const JoinCandidate& x, const JoinCandidate& y) { return x.cost < y.cost; });
+  return candidates;
+}
+
+}  // namespace tubebin

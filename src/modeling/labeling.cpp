@@ -1,0 +1,155 @@
+#include "tubebin/modeling/labeling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace tubebin {
+namespace {
+
+/// A cylinder of a surface, ready for distances. At a flat end the solid stops; at the others a sphere goes on.
+struct SolidCylinder {
+  Point start, axis;  ///< axis: unit
+  float length, radius;
+  bool flat_start, flat_end;
+  std::uint32_t surface;
+
+  /// Signed distance to the surface of this cylinder with its spheres: negative inside. The union's surface is where
+  /// the least of its parts' signed distances is zero.
+  float signed_distance(const Point& p) const {
+    const Point offset = p - start;
+    const float along = offset.dot(axis);
+    const float squared = std::max(offset.squaredNorm() - along * along, 0.0f);
+    if (along < 0.0f && !flat_start) return offset.norm() - radius;
+    if (along > length && !flat_end) return (offset - length * axis).norm() - radius;
+    const float side = std::sqrt(squared) - radius;
+    float cap = -std::numeric_limits<float>::infinity();
+    if (flat_start) cap = std::max(cap, -along);
+    if (flat_end) cap = std::max(cap, along - length);
+    if (side > 0.0f && cap > 0.0f) return std::sqrt(side * side + cap * cap);
+    return std::max(side, cap);
+  }
+};
+
+std::vector<SolidCylinder> solid_cylinders(const TubeSurface& surface, std::uint32_t index) {
+  std::vector<SolidCylinder> cylinders;
+  for (std::size_t k = 0; k + 1 < surface.nodes.size(); ++k) {
+    const Vec3 along = surface.nodes[k + 1] - surface.nodes[k];
+    const double length = along.norm();
+    if (length <= 0.0) continue;
+    cylinders.push_back({.start = surface.nodes[k].cast<float>(),
+                         .axis = (along / length).cast<float>(),
+                         .length = static_cast<float>(length),
+                         .radius = static_cast<float>(surface.radius),
+                         .flat_start = k == 0,
+                         .flat_end = k + 2 == surface.nodes.size(),
+                         .surface = index});
+  }
+  return cylinders;
+}
+
+/// Which cylinders come near each cube of space, in one run of memory a cube.
+class CylinderGrid {
+ public:
+  CylinderGrid(const std::vector<SolidCylinder>& cylinders, float reach) {
+    float widest = 0.0f;
+    box_.setEmpty();
+    for (const SolidCylinder& c : cylinders) {
+      const float pad = c.radius + reach;
+      widest = std::max(widest, pad);
+      for (const Point& end : {c.start, Point(c.start + c.length * c.axis)})
+        box_.extend(end - Point::Constant(pad)).extend(end + Point::Constant(pad));
+    }
+    // Cubes about as wide as a tube hold few cylinders each; no more of them than a few per point of a large cloud.
+    constexpr float kMostCubes = 1 << 21;
+    cube_ = std::max(widest, std::cbrt(box_.volume() / kMostCubes));
+    size_ = ((box_.sizes() / cube_).array().floor().cast<int>() + 1);
+    const auto cubes = static_cast<std::size_t>(size_.prod());
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> entries;  // cube, cylinder
+    for (std::uint32_t i = 0; i < cylinders.size(); ++i) add(cylinders[i], i, reach, entries);
+    std::sort(entries.begin(), entries.end());
+    entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+    starts_.assign(cubes + 1, 0);
+    for (const auto& [cube, cylinder] : entries) {
+      ++starts_[cube + 1];
+      cylinders_.push_back(cylinder);
+    }
+    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+  }
+
+  std::span<const std::uint32_t> near(const Point& p) const {
+    if (!box_.contains(p)) return {};
+    const Eigen::Array3i at = ((p - box_.min()) / cube_).array().cast<int>().min(size_ - 1);
+    const auto cube = static_cast<std::size_t>((at.z() * size_.y() + at.y()) * size_.x() + at.x());
+    return {cylinders_.data() + starts_[cube], cylinders_.data() + starts_[cube + 1]};
+  }
+
+ private:
+  void add(const SolidCylinder& c, std::uint32_t index, float reach,
+           std::vector<std::pair<std::uint32_t, std::uint32_t>>& entries) const {
+    // Balls half a cube apart cover the cylinder if they are larger than it by the sagitta, under a quarter cube.
+    const float step = cube_ / 2.0f;
+    const float ball = c.radius + reach + cube_ / 4.0f;
+    const int balls = static_cast<int>(c.length / step) + 2;
+    for (int b = 0; b < balls; ++b) {
+      const Point center = c.start + std::min(static_cast<float>(b) * step, c.length) * c.axis;
+      const auto low = ((center - box_.min()).array() - ball) / cube_;
+      const auto high = ((center - box_.min()).array() + ball) / cube_;
+      const Eigen::Array3i first = low.floor().cast<int>().max(0), last = high.floor().cast<int>().min(size_ - 1);
+      for (int z = first.z(); z <= last.z(); ++z)
+        for (int y = first.y(); y <= last.y(); ++y)
+          for (int x = first.x(); x <= last.x(); ++x)
+            entries.emplace_back(static_cast<std::uint32_t>((z * size_.y() + y) * size_.x() + x), index);
+    }
+  }
+
+  Eigen::AlignedBox3f box_;
+  float cube_ = 1.0f;
+  Eigen::Array3i size_;
+  std::vector<std::uint32_t> starts_, cylinders_;
+};
+
+}  // namespace
+
+double distance_to_surface(const TubeSurface& surface, const Vec3& point) {
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const SolidCylinder& c : solid_cylinders(surface, 0))
+    nearest = std::min(nearest, c.signed_distance(point.cast<float>()));
+  return nearest;
+}
+
+std::vector<NearestSurface> nearest_surfaces(std::span<const Point> points, const std::vector<TubeSurface>& surfaces,
+                                             double reach) {
+  std::vector<SolidCylinder> cylinders;
+  for (std::uint32_t s = 0; s < surfaces.size(); ++s)
+    for (const SolidCylinder& c : solid_cylinders(surfaces[s], s)) cylinders.push_back(c);
+  std::vector<NearestSurface> nearest(points.size());
+  if (cylinders.empty()) return nearest;
+
+  const CylinderGrid grid(cylinders, static_cast<float>(reach));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    nearest[i].distance = static_cast<float>(reach);
+    // A cube's cylinders are sorted, so those of one surface follow each other.
+    std::uint32_t surface = NearestSurface::kNone;
+    float least = 0.0f;
+    const auto settle = [&] {
+      if (surface != NearestSurface::kNone && std::abs(least) < std::abs(nearest[i].distance))
+        nearest[i] = {.surface = surface, .distance = least};
+    };
+    for (const std::uint32_t c : grid.near(points[i])) {
+      const float distance = cylinders[c].signed_distance(points[i]);
+      if (cylinders[c].surface == surface) {
+        least = std::min(least, distance);
+        continue;
+      }
+      settle();
+      surface = cylinders[c].surface;
+      least = distance;
+    }
+    settle();
+  }
+  return nearest;
+}
+
+}  // namespace tubebin

@@ -1,0 +1,90 @@
+#include "tubebin/modeling/occlusion.hpp"
+
+#include <cmath>
+
+namespace tubebin {
+namespace {
+
+/// The measured points that can lie in front of or behind a tube: with a known bin, those within its outer walls.
+std::vector<std::uint32_t> points_over_bin(const ModelingInput& input) {
+  std::vector<std::uint32_t> selected;
+  selected.reserve(input.points.size());
+  const Eigen::Isometry3f bin_from_world = input.world_from_bin.inverse().cast<float>();
+  float x_max = std::numeric_limits<float>::infinity(), y_max = x_max;
+  if (input.bin) {
+    x_max = static_cast<float>(input.bin->length / 2.0 + input.bin->wall_thickness);
+    y_max = static_cast<float>(input.bin->width / 2.0 + input.bin->wall_thickness);
+  }
+  for (std::uint32_t i = 0; i < input.points.size(); ++i) {
+    const Point p = bin_from_world * input.points[i];
+    if (std::abs(p.x()) <= x_max && std::abs(p.y()) <= y_max && std::isfinite(p.z())) selected.push_back(i);
+  }
+  return selected;
+}
+
+float view_cell(const ModelingInput& input, const ViewProjection& projection, double spacing) {
+  // Two spacings a cell: few cells of a surface are empty by chance, and a tube's gap is many cells wide still.
+  const Vec3 middle = input.world_from_bin.translation();
+  const double range = input.bin ? (middle - projection.viewpoint().cast<double>()).norm() : 1.0;
+  return static_cast<float>(2.0 * spacing / range);
+}
+
+}  // namespace
+
+OcclusionTest::OcclusionTest(const ModelingInput& input, const ViewProjection& projection, double spacing,
+                             double radius)
+    : viewpoint_(projection.viewpoint().cast<double>()),
+      radius_(radius),
+      image_(projection, input.points, points_over_bin(input), view_cell(input, projection, spacing)),
+      bin_(input.bin),
+      bin_from_world_(input.world_from_bin.inverse()) {}
+
+bool OcclusionTest::in_bin_solid(const Vec3& point) const {
+  if (!bin_) return false;
+  const Vec3 p = bin_from_world_ * point;
+  if (p.z() > bin_->height) return false;
+  return p.z() < 0.0 || std::abs(p.x()) > bin_->length / 2.0 || std::abs(p.y()) > bin_->width / 2.0;
+}
+
+StretchEvidence OcclusionTest::around(const Vec3& center, const Vec3& direction) const {
+  StretchEvidence sum;
+  const Vec3 to_viewpoint = (viewpoint_ - center).normalized();
+  const Vec3 up = (to_viewpoint - to_viewpoint.dot(direction) * direction).normalized();
+  const Vec3 side = direction.cross(up);
+  // Half of the width is clear of what the silhouettes' neighbours cover by chance. Half a radius of tolerance is far
+  // above the noise, and far below the tube's thickness by which a floor or another tube lies behind.
+  for (const double across : {-0.5, 0.0, 0.5}) {
+    const Vec3 surface = center + radius_ * (across * side + std::sqrt(1.0 - across * across) * up);
+    if (in_bin_solid(center)) {
+      sum.empty += 1.0;
+      continue;
+    }
+    switch (image_.evidence(surface.cast<float>(), static_cast<float>(radius_ / 2.0))) {
+      case RangeImage::Evidence::hidden: sum.hidden += 1.0; break;
+      case RangeImage::Evidence::surface: sum.surface += 1.0; break;
+      case RangeImage::Evidence::empty: sum.empty += 1.0; break;
+    }
+  }
+  return {sum.hidden / 3.0, sum.surface / 3.0, sum.empty / 3.0};
+}
+
+StretchEvidence OcclusionTest::along(const std::vector<Vec3>& curve) const {
+  StretchEvidence sum;
+  double samples = 0.0;
+  for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+    const Vec3 step = curve[i + 1] - curve[i];
+    const StretchEvidence e = around(curve[i] + 0.5 * step, step.normalized());
+    sum.hidden += e.hidden, sum.surface += e.surface, sum.empty += e.empty;
+    samples += 1.0;
+  }
+  if (samples > 0.0) sum.hidden /= samples, sum.surface /= samples, sum.empty /= samples;
+  return sum;
+}
+
+double OcclusionTest::hidden_reach(const Vec3& end, const Vec3& outward, double limit) const {
+  for (double reach = radius_ / 2.0; reach < limit; reach += radius_ / 2.0)
+    if (around(end + reach * outward, outward).empty > 0.5) return reach;
+  return limit;
+}
+
+}  // namespace tubebin

@@ -1,0 +1,116 @@
+#include "tubebin/modeling/pipeline.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "tubebin/core/error.hpp"
+#include "tubebin/modeling/centerline_pieces.hpp"
+#include "tubebin/modeling/centerline_segmentation.hpp"
+#include "tubebin/modeling/labeling.hpp"
+#include "tubebin/modeling/radius_estimation.hpp"
+#include "tubebin/modeling/tube_joining.hpp"
+
+namespace tubebin {
+namespace {
+
+class Stopwatch {
+ public:
+  /// Adds the time since the last lap.
+  void lap(double& seconds) {
+    const auto now = std::chrono::steady_clock::now();
+    seconds += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// From the normals at first, then from what the points about the longest pieces say.
+double find_radius(const FilteredCloud& cloud, const ViewProjection& projection) {
+  const double first = estimate_radius(cloud.points, cloud.normals, cloud.spacing);
+  if (first <= 0.0) return 0.0;
+  auto segments = segment_by_votes(cloud, first);
+  std::sort(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) { return a.size() > b.size(); });
+  if (segments.size() > 5) segments.resize(5);
+  return refine_radius(find_centerline_pieces(cloud, segments, projection, first), cloud.points, first);
+}
+
+std::vector<TubePiece> find_cylinder_pieces(const FilteredCloud& cloud, const std::vector<Segment>& segments,
+                                            double radius, const RegionGrowingOptions& options) {
+  std::vector<TubePiece> pieces;
+  for (const Segment& segment : segments)
+    for (TubePiece& piece : fit_cylinders(cloud, segment, radius, options)) pieces.push_back(std::move(piece));
+  return pieces;
+}
+
+double standard_deviation(const std::vector<NearestSurface>& nearest) {
+  double squares = 0.0, count = 0.0;
+  for (const NearestSurface& n : nearest)
+    if (n.surface != NearestSurface::kNone) squares += double(n.distance) * double(n.distance), count += 1.0;
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+std::vector<Label> label_points(const FilteredCloud& cloud, ModelingResult& result) {
+  std::vector<TubeSurface> surfaces;
+  for (const TubeModel& tube : result.tubes) surfaces.push_back({tube.nodes, tube.radius});
+  // Half a radius: what a bridge's guessed course may be off; the nearest tube wins all the same.
+  const auto nearest = nearest_surfaces(cloud.points, surfaces, result.radius / 2.0);
+  result.noise = standard_deviation(nearest);
+  std::vector<Label> labels;
+  for (const NearestSurface& n : nearest) labels.push_back(n.surface == NearestSurface::kNone ? 0 : n.surface + 1);
+  return labels;
+}
+
+}  // namespace
+
+void describe(Fields& fields, ModelingOptions& options) {
+  fields.choice("method", options.method, {"centerline", "region_growing"}, "how tubes are found");
+  fields.seed("seed", options.seed, "of downsampling and of RANSAC");
+  fields.number("radius", options.radius, {0.0, 1.0}, "m", "outer radius of the tubes; 0: estimated from the cloud");
+  fields.number("tube_length", options.tube_length, {0.0, 100.0}, "m",
+                "length of every tube; 0: what the tubes in sight agree on, if they do");
+  fields.group("filtering", "step 1", [&](Fields& inner) { describe(inner, options.filtering); });
+  fields.group("region_growing", "steps 2 and 3 of that method",
+               [&](Fields& inner) { describe(inner, options.region_growing); });
+  fields.group("greedy_joining", "step 4 of that method",
+               [&](Fields& inner) { describe(inner, options.greedy_joining); });
+}
+
+ModelingResult model_tubes(const ModelingInput& input, const ModelingOptions& options) {
+  ModelingResult result;
+  Stopwatch watch;
+
+  const ViewProjection projection = view_of(input);
+  FilteredCloud cloud = filter(input, projection, options.filtering, options.radius, options.seed);
+  result.radius = options.radius > 0.0 ? options.radius : find_radius(cloud, projection);
+  result.spacing = cloud.spacing;
+  watch.lap(result.seconds.filtering);
+
+  if (result.radius > 0.0 && options.method == ModelingMethod::centerline) {
+    const std::vector<Segment> segments = segment_by_votes(cloud, result.radius);
+    watch.lap(result.seconds.segmentation);
+    const std::vector<TubePiece> pieces = find_centerline_pieces(cloud, segments, projection, result.radius);
+    watch.lap(result.seconds.fitting);
+    const OcclusionTest occlusion(input, projection, cloud.spacing * std::sqrt(options.filtering.ratio), result.radius);
+    Joining joining = join_pieces(pieces, occlusion, options.tube_length);
+    result.tubes = std::move(joining.tubes);
+    result.tube_length = joining.tube_length;
+    watch.lap(result.seconds.joining);
+  } else if (result.radius > 0.0) {
+    const std::vector<Segment> segments = grow_regions(cloud, options.region_growing);
+    watch.lap(result.seconds.segmentation);
+    const std::vector<TubePiece> pieces = find_cylinder_pieces(cloud, segments, result.radius, options.region_growing);
+    watch.lap(result.seconds.fitting);
+    result.tubes = join_greedily(pieces, options.greedy_joining);
+    watch.lap(result.seconds.joining);
+  }
+
+  result.labels = label_points(cloud, result);
+  watch.lap(result.seconds.labeling);
+  result.source = std::move(cloud.source);
+  return result;
+}
+
+}  // namespace tubebin

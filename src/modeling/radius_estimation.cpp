@@ -1,0 +1,86 @@
+#include "tubebin/modeling/radius_estimation.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace tubebin {
+namespace {
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Largest principal curvature at a point: the symmetric 2 x 2 map from tangent offsets to changes of the normal, by
+/// least squares over its neighbours. 0 where the surface curves both ways.
+double cylinder_curvature(const Point& p, const Point& n, const std::vector<std::pair<Point, Point>>& neighbors) {
+  const Point u = n.unitOrthogonal();
+  const Point v = n.cross(u);
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero(), turn = Eigen::Matrix2d::Zero();
+  for (const auto& [q, m] : neighbors) {
+    const Eigen::Vector2d offset(double((q - p).dot(u)), double((q - p).dot(v)));
+    const Eigen::Vector2d change(double((m - n).dot(u)), double((m - n).dot(v)));
+    scatter += offset * offset.transpose();
+    turn += change * offset.transpose();
+  }
+  if (scatter.determinant() <= 0.0) return 0.0;
+  const Eigen::Matrix2d shape = turn * scatter.inverse();
+  const Eigen::Vector2d k =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(0.5 * (shape + shape.transpose())).eigenvalues();
+  return k(1) > 0.0 && std::abs(k(0)) < 0.3 * k(1) ? k(1) : 0.0;
+}
+
+}  // namespace
+
+double estimate_radius(const std::vector<Point>& points, const std::vector<Point>& normals, double spacing) {
+  // Some hundred places are enough for a median. Neighbours within four spacings, about fifty of them.
+  constexpr std::size_t kPlaces = 400;
+  const std::size_t stride = points.size() / kPlaces + 1;
+  const auto squared_reach = static_cast<float>(16.0 * spacing * spacing);
+  std::vector<double> radii;
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    if (normals[i].isZero()) continue;
+    std::vector<std::pair<Point, Point>> neighbors;
+    for (std::size_t j = 0; j < points.size(); ++j)
+      if ((points[j] - points[i]).squaredNorm() < squared_reach && normals[j].dot(normals[i]) > 0.5f)
+        neighbors.emplace_back(points[j], normals[j]);
+    const double curvature = neighbors.size() < 6 ? 0.0 : cylinder_curvature(points[i], normals[i], neighbors);
+    if (curvature > 0.0) radii.push_back(1.0 / curvature);
+  }
+  return radii.size() < 10 ? 0.0 : median(radii);
+}
+
+double refine_radius(const std::vector<TubePiece>& pieces, const std::vector<Point>& points, double radius) {
+  std::vector<double> radii;
+  for (const TubePiece& piece : pieces)
+    for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
+      const Vec3 start = piece.nodes[k], along = piece.nodes[k + 1] - start;
+      const double length = along.norm();
+      if (length < 2.0 * radius) continue;
+      const Vec3 axis = along / length, u = axis.unitOrthogonal(), v = axis.cross(u);
+      // x^2 + y^2 = 2 a x + 2 b y + c, linear in (a, b, c); r^2 = c + a^2 + b^2.
+      Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
+      Vec3 right = Vec3::Zero();
+      std::size_t count = 0;
+      for (const std::uint32_t i : piece.points) {
+        const Vec3 offset = points[i].cast<double>() - start;
+        const double t = offset.dot(axis);
+        const double x = offset.dot(u), y = offset.dot(v);
+        if (t < 0.0 || t > length || std::abs(std::hypot(x, y) - radius) > radius / 4.0) continue;
+        const Vec3 row(2.0 * x, 2.0 * y, 1.0);
+        normal_matrix += row * row.transpose();
+        right += (x * x + y * y) * row;
+        ++count;
+      }
+      if (count < 30) continue;
+      const Vec3 circle = normal_matrix.ldlt().solve(right);
+      const double squared = circle.z() + circle.x() * circle.x() + circle.y() * circle.y();
+      if (squared > 0.0) radii.push_back(std::sqrt(squared));
+    }
+  return radii.empty() ? radius : median(radii);
+}
+
+}  // namespace tubebin

@@ -1,0 +1,261 @@
+#include "tubebin/modeling/tube_joining.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "tubebin/modeling/path_cover.hpp"
+
+namespace tubebin {
+namespace {
+
+/// -log of the part of tube ends that happen to lie hidden in a pile: about a third.
+constexpr double kHiddenEndCost = 1.0;
+/// A tube shorter than it should be can have other reasons than a missed join (a stretch too narrow to segment, a
+/// length that is not common to all): e^-10.
+constexpr double kShortCostLimit = 10.0;
+/// A fragment that no tube explains is as likely chance as not: e^-3.
+constexpr double kFragmentCostLimit = 3.0;
+constexpr std::size_t kNodeLimit = 2000;
+constexpr std::size_t kPathLimit = 1000;
+
+/// A chain of pieces under construction: enters its last piece at one end and may leave it by the other.
+struct Chain {
+  PathCandidate path;                ///< its items: the pieces in order, then the fragments absorbed
+  std::vector<std::uint32_t> pieces;
+  std::vector<std::uint32_t> joins;  ///< candidates used
+  std::uint32_t first_end = 0;       ///< where the tube starts
+  std::uint32_t last_end = 0;        ///< where it ends so far
+  double join_cost = 0.0;
+  double length = 0.0;               ///< of pieces and bridges, metres
+  double bridged = 0.0;              ///< of bridges alone, metres
+};
+
+class Joiner {
+ public:
+  Joiner(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length)
+      : pieces_(pieces), tube_length_(tube_length), radius_(pieces.front().radius) {
+    for (const TubePiece& piece : pieces) lengths_.push_back(piece.length());
+    bending_rate_ = estimate_bending_rate(pieces, radius_);
+    ends_ = find_piece_ends(pieces, occlusion, 40.0 * radius_);
+    joins_ = find_join_candidates(pieces, ends_, occlusion, bending_rate_, longest());
+    joins_of_end_.resize(ends_.size());
+    for (std::uint32_t j = 0; j < joins_.size(); ++j)
+      for (const std::uint32_t end : {joins_[j].end_a, joins_[j].end_b}) joins_of_end_[end].push_back(j);
+    find_colliding_joins();
+  }
+
+  /// The joins of the best cover under the current tube length.
+  void solve() {
+    chains_.clear();
+    for (std::uint32_t end = 0; end < ends_.size(); ++end) {
+      budget_ = kPathLimit;
+      Chain chain;
+      chain.path.items = {end / 2};
+      chain.pieces = {end / 2};
+      chain.first_end = end;
+      chain.last_end = end ^ 1U;
+      chain.length = lengths_[end / 2];
+      extend(chain);
+    }
+    drop_dominated();
+    std::vector<PathCandidate> paths;
+    for (const Chain& chain : chains_) paths.push_back(chain.path);
+    const auto compatible = [&](std::uint32_t a, std::uint32_t b) { return !bridges_collide(chains_[a], chains_[b]); };
+    std::vector<Chain> chosen;
+    for (const std::uint32_t c : cheapest_path_cover(pieces_.size(), paths, compatible, kNodeLimit))
+      chosen.push_back(chains_[c]);
+    chains_ = std::move(chosen);
+  }
+
+  /// The length that the tubes with both ends in sight agree on, 0 without at least two that do.
+  double common_length() const {
+    std::vector<double> seen;
+    for (const Chain& chain : chains_)
+      if (ends_[chain.first_end].seen_free > 0.5 && ends_[chain.last_end].seen_free > 0.5) seen.push_back(chain.length);
+    std::sort(seen.begin(), seen.end());
+    std::size_t best_first = 0, best_count = 0;
+    for (std::size_t first = 0; first < seen.size(); ++first) {
+      std::size_t last = first;
+      while (last < seen.size() && seen[last] <= seen[first] + 4.0 * length_sigma(seen[first], 0.0)) ++last;
+      // Of equal groups the longer: chance shortens tubes, by missed joins, and lengthens none.
+      if (last - first >= best_count) best_count = last - first, best_first = first;
+    }
+    if (best_count < 2) return 0.0;
+    return seen[best_first + best_count / 2];
+  }
+
+  void set_tube_length(double length) { tube_length_ = length; }
+
+  Joining result() const {
+    Joining joining{.tubes = {}, .tube_of_piece = std::vector<std::uint32_t>(pieces_.size()), .tube_length = tube_length_};
+    for (const Chain& chain : chains_) {
+      if (chain.length < 2.0 * radius_) continue;
+      for (const std::uint32_t piece : chain.path.items)
+        joining.tube_of_piece[piece] = static_cast<std::uint32_t>(joining.tubes.size());
+      joining.tubes.push_back(to_model(chain));
+    }
+    return joining;
+  }
+
+ private:
+  double longest() const {
+    return tube_length_ > 0.0 ? tube_length_ + 5.0 * length_sigma(tube_length_, tube_length_ / 4.0)
+                              : std::numeric_limits<double>::infinity();
+  }
+
+  /// Ends are placed to a fraction of a radius, and a bridge's true course may be a twentieth longer.
+  double length_sigma(double, double bridged) const { return std::hypot(radius_ / 4.0, bridged / 20.0); }
+
+  double end_cost(std::uint32_t end) const { return kHiddenEndCost * (1.0 - ends_[end].seen_free); }
+
+  double length_cost(const Chain& chain) const {
+    if (tube_length_ <= 0.0) return 0.0;
+    const double missing = tube_length_ - chain.length;
+    double room = 0.0;
+    for (const std::uint32_t end : {chain.first_end, chain.last_end})
+      if (ends_[end].seen_free < 0.5) room += ends_[end].hidden_reach + radius_;
+    const double sigma = length_sigma(tube_length_, chain.bridged);
+    if (missing < 0.0) return 0.5 * missing * missing / (sigma * sigma);
+    const double unexplained = std::max(missing - room, 0.0);
+    const bool fragment = chain.pieces.size() == 1 && is_fragment(pieces_[chain.pieces.front()]);
+    return std::min(0.5 * unexplained * unexplained / (sigma * sigma), fragment ? kFragmentCostLimit : kShortCostLimit);
+  }
+
+  void extend(const Chain& chain) {
+    if (budget_ == 0) return;
+    --budget_;
+    // Each chain is found from both sides: the one that starts at the lower end counts.
+    if (chain.first_end < chain.last_end) {
+      chains_.push_back(chain);
+      chains_.back().path.cost =
+          chain.join_cost + length_cost(chain) + end_cost(chain.first_end) + end_cost(chain.last_end);
+    }
+    for (const std::uint32_t j : joins_of_end_[chain.last_end]) {
+      const std::uint32_t entered = joins_[j].end_a == chain.last_end ? joins_[j].end_b : joins_[j].end_a;
+      const std::uint32_t piece = entered / 2;
+      const auto taken = [&](std::uint32_t k) {
+        return std::find(chain.path.items.begin(), chain.path.items.end(), k) != chain.path.items.end();
+      };
+      if (taken(piece) || std::any_of(joins_[j].absorbed.begin(), joins_[j].absorbed.end(), taken)) continue;
+      const double gap = polyline_length(joins_[j].bridge);
+      if (chain.length + gap + lengths_[piece] > longest()) continue;
+      Chain next = chain;
+      next.pieces.push_back(piece);
+      next.path.items.push_back(piece);
+      next.path.items.insert(next.path.items.end(), joins_[j].absorbed.begin(), joins_[j].absorbed.end());
+      next.joins.push_back(j);
+      next.last_end = entered ^ 1U;
+      next.join_cost += joins_[j].cost;
+      next.length += gap + lengths_[piece];
+      next.bridged += gap;
+      extend(next);
+    }
+  }
+
+  /// Drops the chains that no best cover needs: of those that hold the same pieces all but the cheapest, and those that
+  /// cost no less than their two parts do when cut at one of their joins.
+  void drop_dominated() {
+    using Items = std::vector<std::uint32_t>;
+    const auto sorted = [](Items items) {
+      std::sort(items.begin(), items.end());
+      return items;
+    };
+    std::map<Items, std::size_t> best;
+    for (std::size_t c = 0; c < chains_.size(); ++c) {
+      const auto [entry, added] = best.emplace(sorted(chains_[c].path.items), c);
+      if (!added && chains_[c].path.cost < chains_[entry->second].path.cost) entry->second = c;
+    }
+    const auto cost_of = [&](const Items& items) {
+      const auto entry = best.find(sorted(items));
+      return entry == best.end() ? std::numeric_limits<double>::infinity() : chains_[entry->second].path.cost;
+    };
+    const auto better_cut = [&](const Chain& chain) {
+      for (std::size_t cut = 0; cut < chain.joins.size(); ++cut) {
+        Items front, back;
+        double cost = 0.0;
+        for (std::size_t k = 0; k < chain.pieces.size(); ++k) (k <= cut ? front : back).push_back(chain.pieces[k]);
+        for (std::size_t j = 0; j < chain.joins.size(); ++j)
+          for (const std::uint32_t fragment : joins_[chain.joins[j]].absorbed) {
+            if (j == cut) cost += cost_of({fragment});
+            else (j < cut ? front : back).push_back(fragment);
+          }
+        if (cost + cost_of(front) + cost_of(back) <= chain.path.cost) return true;
+      }
+      return false;
+    };
+    std::vector<Chain> kept;
+    for (const auto& [key, c] : best)
+      if (!better_cut(chains_[c])) kept.push_back(chains_[c]);
+    chains_ = std::move(kept);
+  }
+
+  void find_colliding_joins() {
+    collides_.assign(joins_.size(), std::vector<bool>(joins_.size(), false));
+    for (std::size_t i = 0; i < joins_.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) collides_[i][j] = collides_[j][i] = bridges_meet(joins_[i].bridge, joins_[j].bridge);
+  }
+
+  /// Less than a radius apart is no matter of the bridges' uncertain course.
+  bool bridges_meet(const std::vector<Vec3>& a, const std::vector<Vec3>& b) const {
+    const double longest = (a.front() - a.back()).norm() + (b.front() - b.back()).norm() + radius_;
+    if ((a.front() - b.front()).norm() > longest) return false;
+    for (const Vec3& p : a)
+      for (const Vec3& q : b)
+        if ((p - q).squaredNorm() < radius_ * radius_) return true;
+    return false;
+  }
+
+  /// Two bridges of different tubes cannot occupy one place.
+  bool bridges_collide(const Chain& a, const Chain& b) const {
+    for (const std::uint32_t i : a.joins)
+      for (const std::uint32_t j : b.joins)
+        if (collides_[i][j]) return true;
+    return false;
+  }
+
+  TubeModel to_model(const Chain& chain) const {
+    TubeModel tube{.nodes = {}, .bridged = {}, .radius = radius_};
+    std::uint32_t entered = chain.first_end;
+    for (std::size_t k = 0; k < chain.pieces.size(); ++k) {
+      auto nodes = pieces_[chain.pieces[k]].nodes;
+      if (entered % 2 == 1) std::reverse(nodes.begin(), nodes.end());
+      for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (!tube.nodes.empty()) tube.bridged.push_back(n == 0);
+        tube.nodes.push_back(nodes[n]);
+      }
+      if (k == chain.joins.size()) break;
+      const JoinCandidate& join = joins_[chain.joins[k]];
+      entered = join.end_a / 2 == chain.pieces[k + 1] ? join.end_a : join.end_b;
+    }
+    return tube;
+  }
+
+  const std::vector<TubePiece>& pieces_;
+  double tube_length_;
+  double radius_;
+  double bending_rate_ = 0.0;
+  std::vector<double> lengths_;
+  std::vector<PieceEnd> ends_;
+  std::vector<JoinCandidate> joins_;
+  std::vector<std::vector<std::uint32_t>> joins_of_end_;
+  std::vector<std::vector<bool>> collides_;  ///< of joins i and j: their bridges take up one place
+  std::vector<Chain> chains_;
+  std::size_t budget_ = 0;
+};
+
+}  // namespace
+
+Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length) {
+  if (pieces.empty()) return {.tubes = {}, .tube_of_piece = {}, .tube_length = tube_length};
+  Joiner joiner(pieces, occlusion, tube_length);
+  joiner.solve();
+  if (tube_length <= 0.0) {
+    joiner.set_tube_length(joiner.common_length());
+    joiner.solve();
+  }
+  return joiner.result();
+}
+
+}  // namespace tubebin
