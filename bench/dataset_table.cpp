@@ -32,7 +32,7 @@ void make_scene(const DatasetConfig& config, const SceneStore& store, const Scen
     const GeneratedScene scene = generate_scene(config, id, attempt);
     const double generated = now();
     if (scene.failure == DropFailure::none) {
-      store.write(id.name(), scene.content);
+      store.begin_write(id.name(), scene.content)();
       costs.seconds["write"] += now() - generated;
       for (const auto& [stage, seconds] : scene.seconds) costs.seconds[stage] += seconds;
     }

@@ -9,10 +9,14 @@
 namespace tubebin {
 namespace {
 
-/// In a worker process: one attempt at a scene, whose folder is complete when this returns a success.
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// In a worker process: one attempt at a scene, whose folder is complete when `finish` has returned.
 AttemptResult make_scene(const DatasetFolder& folder, const SceneId& id, int attempt) {
   GeneratedScene scene = generate_scene(folder.config(), id, attempt);
-  if (scene.failure != DropFailure::none) return {false, to_string(scene.failure), scene.failure_detail};
+  if (scene.failure != DropFailure::none) return failed_attempt(to_string(scene.failure), scene.failure_detail);
 
   ManifestRecord record{.id = id.name(),
                         .tubes = id.tubes,
@@ -22,9 +26,14 @@ AttemptResult make_scene(const DatasetFolder& folder, const SceneId& id, int att
                         .physics = scene.physics,
                         .files = {}};
   const auto start = std::chrono::steady_clock::now();
-  record.files = folder.store().write(record.id, scene.content);
-  record.seconds["write"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return {true, format_manifest_record(record), ""};
+  const auto complete = folder.store().begin_write(record.id, scene.content);
+  record.seconds["write"] = seconds_since(start);
+  return successful_attempt([complete, record]() mutable {
+    const auto wait_start = std::chrono::steady_clock::now();
+    record.files = complete();
+    record.seconds["wait_for_disk"] = seconds_since(wait_start);
+    return format_manifest_record(record);
+  });
 }
 
 std::string describe_failure(const SceneId& id, const JobOutcome& outcome) {
@@ -82,7 +91,7 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
   const PoolReport pool = run_jobs(missing, options, work, events);
   report.signal = pool.signal;
   report.made = pool.succeeded;
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = seconds_since(start);
   return report;
 }
 

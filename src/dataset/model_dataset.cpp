@@ -164,7 +164,7 @@ AttemptResult do_run(const Run& run, const BatchOptions& options, const ModelCon
     input = read_cloud_to_model(run.cloud);
     result = model_cloud(input, own);
   } catch (const IoError& error) {
-    return {false, "unreadable", error.what()};  // this cloud's fault: the others go on
+    return failed_attempt("unreadable", error.what());  // this cloud's fault: the others go on
   }
   std::map<std::string, std::string> files;
   files["model.json"] = format_model_json(
@@ -175,8 +175,10 @@ AttemptResult do_run(const Run& run, const BatchOptions& options, const ModelCon
     files["filtered.pcd"] = format_cloud(filtered_cloud(input.cloud, result), CloudFormat::pcd_compressed);
     files["labeled.pcd"] = format_cloud(labeled_cloud(input.cloud, result), CloudFormat::pcd_compressed);
   }
-  write_whole_folder(options.results + "/" + run.folder(), files);
-  return {true, "", ""};
+  return successful_attempt([finish = begin_whole_folder(options.results + "/" + run.folder(), files)] {
+    finish();
+    return std::string();
+  });
 }
 
 std::string format_index(const BatchOptions& options, const ModelConfig& config,

@@ -32,19 +32,21 @@ void check_reads_back(const std::string& bytes, const Cloud& cloud, const std::s
 
 std::string SceneStore::cloud_name() const { return std::string("cloud") + extension(options_.format); }
 
-std::map<std::string, FileRecord> SceneStore::write(const std::string& scene_name,
-                                                    const SceneContent& content) const {
+std::function<std::map<std::string, FileRecord>()> SceneStore::begin_write(const std::string& scene_name,
+                                                                           const SceneContent& content) const {
   std::map<std::string, std::string> files = content.images;
   files[cloud_name()] = format_cloud(content.cloud, options_.format);
   files["scene.json"] = format_scene_json(content.record);
   files["tubes.txt"] = format_tubes_txt(content.record.scene.tubes);
 
+  const std::function<void()> finish = begin_whole_folder(path(scene_name), files);
+  check_reads_back(files[cloud_name()], content.cloud, path(scene_name) + "/" + cloud_name());
   std::map<std::string, FileRecord> records;
-  write_whole_folder(path(scene_name), files, [&] {
-    for (const auto& [name, bytes] : files) records[name] = record_bytes(bytes);
-    check_reads_back(files[cloud_name()], content.cloud, path(scene_name) + "/" + cloud_name());
-  });
-  return records;
+  for (const auto& [name, bytes] : files) records[name] = record_bytes(bytes);
+  return [finish, records] {
+    finish();
+    return records;
+  };
 }
 
 bool SceneStore::has(const ManifestRecord& record) const {

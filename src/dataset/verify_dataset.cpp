@@ -12,7 +12,7 @@ namespace {
 
 AttemptResult check_scene(const std::string& folder, const DatasetConfig& config, const SceneId& id,
                           const ManifestRecord& record) {
-  return {true, fmt::format("{}", fmt::join(verify_scene(folder, config, id, record), "\n")), ""};
+  return successful_attempt(fmt::format("{}", fmt::join(verify_scene(folder, config, id, record), "\n")));
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 #include "file_descriptor.hpp"
@@ -83,18 +84,33 @@ class NewFile {
   FileDescriptor file_;
 };
 
+/// The files of one folder on their way to the disk.
+class FolderOnItsWay {
+ public:
+  FolderOnItsWay(const std::string& path, const std::map<std::string, std::string>& files) try
+      : path_(path), folder_(path) {
+    for (const auto& [name, bytes] : files) files_.emplace_back(folder_.file(name), bytes);
+  } catch (const fs::filesystem_error& error) {
+    throw_io_error("{}: cannot be written: {}", path, error.code().message());
+  }
+
+  void arrive() const try {
+    for (const NewFile& file : files_) file.sync();
+    folder_.rename_to_final();
+  } catch (const fs::filesystem_error& error) {
+    throw_io_error("{}: cannot be written: {}", path_, error.code().message());
+  }
+
+ private:
+  std::string path_;
+  UnfinishedFolder folder_;
+  std::vector<NewFile> files_;
+};
+
 }  // namespace
 
-void write_whole_folder(const std::string& path, const std::map<std::string, std::string>& files,
-                        const std::function<void()>& meanwhile) try {
-  const UnfinishedFolder folder(path);
-  std::vector<NewFile> written;
-  for (const auto& [name, bytes] : files) written.emplace_back(folder.file(name), bytes);
-  meanwhile();
-  for (const NewFile& file : written) file.sync();
-  folder.rename_to_final();
-} catch (const fs::filesystem_error& error) {
-  throw_io_error("{}: cannot be written: {}", path, error.code().message());
+std::function<void()> begin_whole_folder(const std::string& path, const std::map<std::string, std::string>& files) {
+  return [folder = std::make_shared<FolderOnItsWay>(path, files)] { folder->arrive(); };
 }
 
 bool is_unfinished_folder(const std::string& path) {

@@ -11,6 +11,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "tubebin/core/error.hpp"
 #include "worker_process.hpp"
@@ -76,19 +77,24 @@ class RunningClock {
 
 struct Worker {
   std::unique_ptr<WorkerProcess> process;
-  std::optional<JobOutcome> job;  ///< in work; none: idle
-  int kills = 0;                  ///< of the current attempt, from outside
+  std::optional<JobOutcome> job;        ///< in work
+  int kills = 0;                        ///< of the current attempt, from outside
   double attempt_start = 0.0;
+  std::optional<JobOutcome> finishing;  ///< computed, and not done until its `finish` has returned
+
+  bool busy() const { return job || finishing; }
 };
 
 class Pool {
  public:
   Pool(const std::vector<std::size_t>& jobs, const PoolOptions& options, const Work& work, const PoolEvents& events)
-      : waiting_(jobs.begin(), jobs.end()),
-        options_(options),
+      : options_(options),
         work_(work),
         events_(events),
-        workers_(std::min(jobs.size(), static_cast<std::size_t>(std::max(options.workers, 1)))) {}
+        workers_(std::min(jobs.size(), static_cast<std::size_t>(std::max(options.workers, 1)))) {
+    for (const std::size_t job : jobs)
+      waiting_.push_back({.job = job, .succeeded = false, .text = "", .failed = {}, .seconds = 0.0});
+  }
 
   PoolReport run() {
     for (Worker& worker : workers_) give_next_job(worker);
@@ -103,7 +109,7 @@ class Pool {
 
  private:
   bool any_busy() const {
-    return std::any_of(workers_.begin(), workers_.end(), [](const Worker& worker) { return worker.job.has_value(); });
+    return std::any_of(workers_.begin(), workers_.end(), [](const Worker& worker) { return worker.busy(); });
   }
 
   bool stopping() const { return signals_.received() != 0; }
@@ -117,7 +123,7 @@ class Pool {
   void wait_for_answers() {
     std::vector<pollfd> sockets;
     for (const Worker& worker : workers_)
-      sockets.push_back({.fd = worker.job ? worker.process->socket() : -1, .events = POLLIN, .revents = 0});
+      sockets.push_back({.fd = worker.busy() ? worker.process->socket() : -1, .events = POLLIN, .revents = 0});
     const timespec timeout = {.tv_sec = 0, .tv_nsec = static_cast<long>(kTickSeconds * 1e9)};
     if (ppoll(sockets.data(), sockets.size(), &timeout, &signals_.mask_while_waiting()) <= 0) return;
     for (std::size_t i = 0; i < workers_.size(); ++i)
@@ -125,15 +131,13 @@ class Pool {
   }
 
   void give_next_job(Worker& worker) {
-    worker.job.reset();
-    if (waiting_.empty() || stopping()) {
-      worker.process.reset();
-      return;
+    if (!waiting_.empty() && !stopping()) {
+      worker.job = std::move(waiting_.front());
+      waiting_.pop_front();
+      worker.kills = 0;
+      return start_attempt(worker);
     }
-    worker.job = JobOutcome{.job = waiting_.front(), .succeeded = false, .text = "", .failed = {}, .seconds = 0.0};
-    waiting_.pop_front();
-    worker.kills = 0;
-    start_attempt(worker);
+    if (!worker.finishing) worker.process.reset();
   }
 
   void start_attempt(Worker& worker) {
@@ -153,65 +157,90 @@ class Pool {
   void handle_answer(Worker& worker) {
     const WorkerAnswer answer = worker.process->answer();
     switch (answer.kind) {
-      case WorkerAnswer::Kind::io_error: throw IoError(answer.message);
-      case WorkerAnswer::Kind::config_error: throw ConfigError(answer.message);
+      case WorkerAnswer::Kind::failed: return fail_attempt(worker, answer.text, answer.detail);
+      case WorkerAnswer::Kind::computed: return finish_beside_next(worker);
+      case WorkerAnswer::Kind::succeeded: return succeed(worker, answer.text);
+      case WorkerAnswer::Kind::io_error: throw IoError(answer.text);
+      case WorkerAnswer::Kind::config_error: throw ConfigError(answer.text);
       case WorkerAnswer::Kind::died: return handle_death(worker);
-      case WorkerAnswer::Kind::result: break;
     }
-    if (!answer.result.succeeded) return fail_attempt(worker, answer.result.text, answer.result.detail);
-    worker.job->succeeded = true;
-    worker.job->text = answer.result.text;
-    finish_job(worker);
+  }
+
+  void finish_beside_next(Worker& worker) {
+    worker.job->seconds += clock_.now() - worker.attempt_start;
+    worker.finishing = std::exchange(worker.job, std::nullopt);
+    give_next_job(worker);
+  }
+
+  void succeed(Worker& worker, const std::string& text) {
+    worker.finishing->succeeded = true;
+    worker.finishing->text = text;
+    const JobOutcome outcome = *std::exchange(worker.finishing, std::nullopt);
+    if (!worker.job) worker.process.reset();
+    ++report_.succeeded;
+    events_.on_finished(outcome);
   }
 
   void handle_death(Worker& worker) {
     const int signal = worker.process->wait();
-    worker.process.reset();
     const bool from_outside = signal == SIGKILL || signal == SIGTERM;
     if (!from_outside)
-      return fail_attempt(worker, "crash", signal != 0 ? fmt::format("its process was ended by signal {} ({})", signal,
-                                                                     strsignal(signal))
-                                                       : "its process ended by itself");
+      return lose_process(worker, "crash",
+                          signal != 0 ? fmt::format("its process was ended by signal {} ({})", signal, strsignal(signal))
+                                      : "its process ended by itself");
     if (++worker.kills >= kKillsMax)
-      return fail_attempt(worker, "killed", fmt::format("its process was killed {} times", kKillsMax));
-    if (!stopping()) return start_attempt(worker);
-    give_up_until_next_run(worker);
+      return lose_process(worker, "killed", fmt::format("its process was killed {} times", kKillsMax));
+    worker.process.reset();
+    make_again(worker.finishing);
+    if (stopping()) return make_again(worker.job);
+    if (worker.job) return start_attempt(worker);
+    give_next_job(worker);
   }
 
   void enforce_time_limit(Worker& worker) {
-    if (!worker.job || clock_.now() - worker.attempt_start <= options_.attempt_time_limit) return;
+    if (worker.job && clock_.now() - worker.attempt_start > options_.attempt_time_limit)
+      lose_process(worker, "timeout", fmt::format("no result after {} s", options_.attempt_time_limit));
+  }
+
+  /// The process ended, or must end, by its attempt's fault. A job that it was finishing is innocent, unless it was
+  /// alone.
+  void lose_process(Worker& worker, const std::string& reason, const std::string& detail) {
     worker.process.reset();
-    fail_attempt(worker, "timeout", fmt::format("no result after {} s", options_.attempt_time_limit));
+    if (worker.job) {
+      make_again(worker.finishing);
+    } else {
+      worker.job = std::exchange(worker.finishing, std::nullopt);
+      worker.attempt_start = clock_.now();
+    }
+    fail_attempt(worker, reason, detail);
   }
 
   void fail_attempt(Worker& worker, const std::string& reason, const std::string& detail) {
     JobOutcome& job = *worker.job;
+    job.seconds += clock_.now() - worker.attempt_start;
     job.failed.push_back({static_cast<int>(job.failed.size()), reason, detail});
     worker.kills = 0;
     events_.on_failed_attempt(job.job, job.failed.back());
-    if (static_cast<int>(job.failed.size()) >= options_.attempts_max) return finish_job(worker);
-    if (stopping()) return give_up_until_next_run(worker);
-    job.seconds += clock_.now() - worker.attempt_start;
+    if (static_cast<int>(job.failed.size()) >= options_.attempts_max) return give_up(worker);
+    if (stopping()) return make_again(worker.job);
     start_attempt(worker);
   }
 
-  /// The next run makes the job anew, from its first attempt.
-  void give_up_until_next_run(Worker& worker) {
-    waiting_.push_front(worker.job->job);
-    worker.job.reset();
+  void give_up(Worker& worker) {
+    const JobOutcome outcome = *std::exchange(worker.job, std::nullopt);
+    give_next_job(worker);
+    ++report_.failed;
+    events_.on_finished(outcome);
   }
 
-  void finish_job(Worker& worker) {
-    worker.job->seconds += clock_.now() - worker.attempt_start;
-    ++(worker.job->succeeded ? report_.succeeded : report_.failed);
-    const JobOutcome outcome = std::move(*worker.job);
-    give_next_job(worker);  // first, so that no worker waits for the caller's bookkeeping
-    events_.on_finished(outcome);
+  /// The job goes back to those that wait, its current attempt to be made once more.
+  void make_again(std::optional<JobOutcome>& job) {
+    if (job) waiting_.push_front(*std::exchange(job, std::nullopt));
   }
 
   StopSignals signals_;
   RunningClock clock_;
-  std::deque<std::size_t> waiting_;
+  std::deque<JobOutcome> waiting_;
   PoolOptions options_;
   const Work& work_;
   const PoolEvents& events_;

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
+#include <thread>
 
 #include "tubebin/core/error.hpp"
 
@@ -18,46 +19,66 @@ namespace {
 
 // Longest text of an answer: a message must fit into the socket's buffer.
 constexpr std::size_t kLongestText = 48 * 1024;
-// What a message begins with.
-constexpr char kSucceeded = 's', kFailed = 'f', kIoError = 'i', kConfigError = 'c';
 // Divides a failure's reason from its detail.
 constexpr char kDivider = '\n';
 
-void send_text(int socket, char kind, std::string text) {
+/// A message is the kind of the answer, one byte, then its text.
+void send_answer(int socket, WorkerAnswer::Kind kind, std::string text) {
   if (text.size() > kLongestText) {  // a message may lose its end, a result may not
-    if (kind == kSucceeded) throw std::length_error("the attempt's result is too long to be handed over");
+    if (kind == WorkerAnswer::Kind::succeeded)
+      throw std::length_error("the attempt's result is too long to be handed over");
     text.resize(kLongestText);
   }
-  text.insert(text.begin(), kind);
+  text.insert(text.begin(), static_cast<char>(kind));
   while (send(socket, text.data(), text.size(), MSG_NOSIGNAL) < 0)
     if (errno != EINTR) _exit(1);  // the parent is gone
 }
 
-void make_attempt(int socket, const Work& work, const Attempt& attempt) {
-  try {
-    const AttemptResult result = work(attempt.job, attempt.number);
-    if (result.succeeded)
-      send_text(socket, kSucceeded, result.text);
-    else
-      send_text(socket, kFailed, result.text + kDivider + result.detail);
-  } catch (const IoError& error) {
-    send_text(socket, kIoError, error.what());
-  } catch (const ConfigError& error) {
-    send_text(socket, kConfigError, error.what());
-  } catch (const std::exception& error) {
-    send_text(socket, kFailed, std::string("crash") + kDivider + error.what());
-  }
-}
+/// Attempts one by one; the end of each that succeeded beside the next one.
+class Server {
+ public:
+  Server(int socket, const Work& work) : socket_(socket), work_(work) {}
 
-[[noreturn]] void serve(int socket, const Work& work) {
-  Attempt attempt;
-  while (true) {
-    const ssize_t size = recv(socket, &attempt, sizeof(attempt), 0);
-    if (size < 0 && errno == EINTR) continue;
-    if (size != sizeof(attempt)) _exit(0);  // the parent has no more work or is gone
-    make_attempt(socket, work, attempt);
+  [[noreturn]] void serve() {
+    Attempt attempt;
+    while (true) {
+      const ssize_t size = recv(socket_, &attempt, sizeof(attempt), 0);
+      if (size < 0 && errno == EINTR) continue;
+      if (size != sizeof(attempt)) _exit(0);  // the parent has no more work or is gone
+      make_attempt(attempt);
+    }
   }
-}
+
+ private:
+  void make_attempt(const Attempt& attempt) {
+    try {
+      AttemptResult result = work_(attempt.job, attempt.number);
+      if (!result.succeeded)
+        return send_answer(socket_, WorkerAnswer::Kind::failed, result.text + kDivider + result.detail);
+      if (finishing_.joinable()) finishing_.join();
+      send_answer(socket_, WorkerAnswer::Kind::computed, "");
+      finishing_ = std::thread([this, result = std::move(result)] { finish(result); });
+    } catch (const IoError& error) {
+      send_answer(socket_, WorkerAnswer::Kind::io_error, error.what());
+    } catch (const ConfigError& error) {
+      send_answer(socket_, WorkerAnswer::Kind::config_error, error.what());
+    } catch (const std::exception& error) {
+      send_answer(socket_, WorkerAnswer::Kind::failed, std::string("crash") + kDivider + error.what());
+    }
+  }
+
+  void finish(const AttemptResult& result) const {
+    try {
+      send_answer(socket_, WorkerAnswer::Kind::succeeded, result.finish ? result.finish() : result.text);
+    } catch (const std::exception& error) {
+      send_answer(socket_, WorkerAnswer::Kind::io_error, error.what());
+    }
+  }
+
+  int socket_;
+  const Work& work_;
+  std::thread finishing_;
+};
 
 /// Ctrl-C reaches every process of a terminal: workers leave the answer to it to their parent.
 void set_signals_of_worker() {
@@ -87,7 +108,7 @@ WorkerProcess::WorkerProcess(const Work& work, const std::vector<int>& others) {
   set_signals_of_worker();
   close(ends[0]);
   for (const int other : others) close(other);
-  serve(ends[1], work);
+  Server(ends[1], work).serve();
 }
 
 WorkerProcess::~WorkerProcess() {
@@ -109,17 +130,11 @@ WorkerAnswer WorkerProcess::answer() {
   do size = recv(socket_.get(), buffer.data(), buffer.size(), 0);
   while (size < 0 && errno == EINTR);
   if (size <= 0) return {};
+  const auto kind = static_cast<WorkerAnswer::Kind>(buffer[0]);
   const std::string text(buffer.data() + 1, static_cast<std::size_t>(size) - 1);
-  switch (buffer[0]) {
-    case kIoError: return {WorkerAnswer::Kind::io_error, {}, text};
-    case kConfigError: return {WorkerAnswer::Kind::config_error, {}, text};
-    case kSucceeded: return {WorkerAnswer::Kind::result, {true, text, ""}, ""};
-    default: break;
-  }
+  if (kind != WorkerAnswer::Kind::failed) return {kind, text, ""};
   const std::size_t divider = std::min(text.find(kDivider), text.size());
-  return {WorkerAnswer::Kind::result,
-          {false, text.substr(0, divider), text.substr(std::min(divider + 1, text.size()))},
-          ""};
+  return {kind, text.substr(0, divider), text.substr(std::min(divider + 1, text.size()))};
 }
 
 void WorkerProcess::kill() {

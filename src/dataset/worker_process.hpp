@@ -18,9 +18,16 @@ struct Attempt {
 
 /// How a worker answered or ended.
 struct WorkerAnswer {
-  enum class Kind { result, io_error, config_error, died } kind = Kind::died;
-  AttemptResult result;     ///< of Kind::result
-  std::string message;      ///< of the errors
+  enum class Kind {
+    failed,     ///< the attempt: `text` is the reason, `detail` what happened
+    computed,   ///< the attempt succeeded and is being finished; the worker takes the next one
+    succeeded,  ///< the attempt that was being finished: `text` is its result
+    io_error,   ///< `text` is the message, as of the next
+    config_error,
+    died
+  } kind = Kind::died;
+  std::string text;
+  std::string detail;
 };
 
 class WorkerProcess {
@@ -34,7 +41,7 @@ class WorkerProcess {
 
   /// Readable when the worker answered or died.
   int socket() const { return socket_.get(); }
-  /// False where the worker is dead already.
+  /// Hands over an attempt, the next one as soon as the last is computed. False where the worker is dead already.
   bool start(const Attempt& attempt);
   WorkerAnswer answer();
   void kill();

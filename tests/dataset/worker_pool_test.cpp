@@ -43,7 +43,7 @@ void expect_no_children() {
   EXPECT_EQ(errno, ECHILD);
 }
 
-AttemptResult success(const std::string& text) { return {.succeeded = true, .text = text, .detail = ""}; }
+AttemptResult success(const std::string& text) { return successful_attempt(text); }
 
 TEST(WorkerPool, RunsEveryJobOnceInWorkerProcesses) {
   const pid_t here = getpid();
@@ -60,7 +60,7 @@ TEST(WorkerPool, DoesNothingWithoutJobs) { EXPECT_EQ(run(0, {.workers = 2}, null
 
 TEST(WorkerPool, RetriesFailuresWithTheNextAttemptUntilTheyAreTooMany) {
   const PoolRun r = run(10, {.workers = 3, .attempts_max = 5}, [](std::size_t job, int attempt) {
-    if (attempt < static_cast<int>(job)) return AttemptResult{false, "outside", fmt::format("tube {}", attempt)};
+    if (attempt < static_cast<int>(job)) return failed_attempt("outside", fmt::format("tube {}", attempt));
     return success(fmt::format("{}", attempt));
   });
   EXPECT_EQ(r.report.succeeded, 5u);
@@ -191,11 +191,59 @@ TEST(WorkerPool, StopsOnASignalAndSaysWhichJobsAreLeft) {
 }
 
 TEST(WorkerPool, HandsOverLongResultsWholeAndRefusesTooLongOnes) {
-  const PoolRun r = run(2, {.workers = 1, .attempts_max = 1}, [](std::size_t job, int) {
-    return success(std::string(job == 0 ? 40'000 : 1'000'000, 'x'));
+  const auto text_of = [](std::size_t size) {
+    return [size](std::size_t, int) { return success(std::string(size, 'x')); };
+  };
+  EXPECT_EQ(run(1, {.workers = 1}, text_of(40'000)).outcomes.at(0).text, std::string(40'000, 'x'));
+  EXPECT_THROW(run(1, {.workers = 1}, text_of(1'000'000)), IoError);
+}
+
+/// Work whose `finish` waits until the next attempt has begun: it would never end if both didn't run side by side.
+Work finishing_beside_the_next(const testing::TemporaryFolder& folder, std::size_t job_count) {
+  return [&folder, job_count](std::size_t job, int) {
+    testing::write_text(folder / std::to_string(job), "begun");
+    return successful_attempt([&folder, job, job_count] {
+      while (job + 1 < job_count && !testing::fs::exists(folder / std::to_string(job + 1))) usleep(1000);
+      return fmt::format("finished {}", job);
+    });
+  };
+}
+
+TEST(WorkerPool, FinishesAnAttemptBesideTheNext) {
+  const testing::TemporaryFolder folder;
+  const PoolRun r = run(10, {.workers = 1}, finishing_beside_the_next(folder, 10));
+  EXPECT_EQ(r.report.succeeded, 10u);
+  for (const auto& [job, outcome] : r.outcomes) EXPECT_EQ(outcome.text, fmt::format("finished {}", job));
+}
+
+TEST(WorkerPool, ACrashCostsTheJobThatIsBeingFinishedNothing) {
+  const testing::TemporaryFolder folder;
+  const PoolRun r = run(2, {.workers = 1, .attempts_max = 2}, [&](std::size_t job, int attempt) {
+    if (job == 1 && attempt == 0) {
+      while (!testing::fs::exists(folder / "0")) usleep(1000);
+      signal(SIGABRT, SIG_DFL);
+      abort();
+    }
+    return successful_attempt([&folder, job, attempt] {
+      const std::string mark = folder / std::to_string(job);
+      const bool is_first_time = !testing::fs::exists(mark);
+      testing::write_text(mark, "");
+      while (job == 0 && is_first_time) pause();  // the other job's crash ends it
+      return std::to_string(attempt);
+    });
   });
-  EXPECT_EQ(r.outcomes.at(0).text, std::string(40'000, 'x'));
-  EXPECT_FALSE(r.outcomes.at(1).succeeded);
+  EXPECT_EQ(r.outcomes.at(0).text, "0");
+  EXPECT_TRUE(r.outcomes.at(0).failed.empty());
+  EXPECT_EQ(r.outcomes.at(1).text, "1");
+  EXPECT_EQ(r.outcomes.at(1).failed.size(), 1u);
+}
+
+TEST(WorkerPool, EndsTheRunWhenFinishingFails) {
+  const auto work = [](std::size_t, int) {
+    return successful_attempt([]() -> std::string { throw IoError("disk full"); });
+  };
+  EXPECT_THROW(run(5, {.workers = 2}, work), IoError);
+  expect_no_children();
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 /// own, synced, and renamed.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <string>
 
 #include "tubebin/dataset/dataset_config.hpp"
@@ -27,9 +29,11 @@ class SceneStore {
   /// "cloud.pcd" or "cloud.ply"
   std::string cloud_name() const;
 
-  /// Writes the scene, in the place of any that is there, and returns its files. Throws IoError; nothing
-  /// unfinished is under the scene's name then.
-  std::map<std::string, FileRecord> write(const std::string& scene_name, const SceneContent& content) const;
+  /// Begins to write the scene, in the place of any that is there. It is complete when the returned function has
+  /// returned its files, after waiting for the disk. Both throw IoError; nothing unfinished is ever under the scene's
+  /// name.
+  std::function<std::map<std::string, FileRecord>()> begin_write(const std::string& scene_name,
+                                                                 const SceneContent& content) const;
 
   /// True where the scene's folder has the files of the record, each with its size (hashes are for verify).
   bool has(const ManifestRecord& record) const;

@@ -7,13 +7,12 @@
 
 namespace tubebin {
 
-/// Writes the files (bytes by name) into a hidden sibling of `path`, syncs it, and renames it to `path`, in the place
-/// of what was there. `meanwhile` runs while the bytes are on their way to the disk; if it throws, nothing is left.
-/// Throws IoError.
-void write_whole_folder(const std::string& path, const std::map<std::string, std::string>& files,
-                        const std::function<void()>& meanwhile = [] {});
+/// Begins to write the files (bytes by name) into a hidden sibling of `path`. The returned function waits until they
+/// are on the disk and renames the sibling to `path`, in the place of what was there; without its call nothing is
+/// left. Both throw IoError.
+std::function<void()> begin_whole_folder(const std::string& path, const std::map<std::string, std::string>& files);
 
-/// True for what a killed write_whole_folder leaves behind.
+/// True for what a kill leaves behind while a folder is being written.
 bool is_unfinished_folder(const std::string& path);
 
 }  // namespace tubebin

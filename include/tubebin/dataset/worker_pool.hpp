@@ -24,7 +24,16 @@ struct AttemptResult {
   bool succeeded = false;
   std::string text;    ///< of a success: its result; of a failure: the reason in one word, to be counted
   std::string detail;  ///< of a failure: what happened, for people
+  /// Of a success, or empty: what is left to wait for, as a disk. Runs in a thread beside the worker's next attempt
+  /// and returns the result in the place of `text`. An exception from it ends the whole run.
+  std::function<std::string()> finish;
 };
+
+inline AttemptResult successful_attempt(std::string text) { return {true, std::move(text), "", {}}; }
+inline AttemptResult successful_attempt(std::function<std::string()> finish) { return {true, "", "", std::move(finish)}; }
+inline AttemptResult failed_attempt(std::string reason, std::string detail) {
+  return {false, std::move(reason), std::move(detail), {}};
+}
 
 struct FailedAttempt {
   int attempt = 0;     ///< from 0
@@ -37,7 +46,7 @@ struct JobOutcome {
   bool succeeded = false;
   std::string text;                   ///< of the attempt that succeeded
   std::vector<FailedAttempt> failed;  ///< in order
-  double seconds = 0.0;               ///< wall-clock time of all its attempts
+  double seconds = 0.0;               ///< wall-clock time of all its attempts, without `finish`
 };
 
 struct PoolReport {
