@@ -7,6 +7,7 @@
 #include "tubebin/dataset/generate_dataset.hpp"
 #include "tubebin/dataset/timing_table.hpp"
 #include "tubebin/dataset/verify_dataset.hpp"
+#include "tubebin/scan/scanner.hpp"
 
 namespace {
 
@@ -25,7 +26,7 @@ Examples:
 
 Run the same command again after an interruption: complete scenes are kept.
 Exit codes: 0 done; 1 input or output failed; 2 wrong usage or configuration; 3 finished, but some scenes could not
-be done or are damaged (each is named); 130 and 143 interrupted by Ctrl-C or SIGTERM.)";
+be done or are damaged (each is named); 128 + the signal's number when interrupted (Ctrl-C: 130).)";
 
 struct Arguments {
   std::string config;
@@ -144,7 +145,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Generates data sets of entangled tubes in a bin: labelled point clouds with their ground truth.");
   app.footer(kExamples);
-  app.set_version_flag("--version", tool_version());
+  app.set_version_flag("--version", fmt::format("{} (Embree {})", tool_version(), embree_version()));
   add_options(app, arguments);
   try {
     app.parse(argc, argv);

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "scan/embree.hpp"
 #include "scan/ray_caster.hpp"
 #include "scan/view_window.hpp"
 #include "tubebin/cloud/label_colors.hpp"
@@ -85,5 +86,7 @@ Scan scan(const Scene& scene) {
     scan_organized(caster, camera, seen, colors, scan);
   return scan;
 }
+
+const char* embree_version() { return RTC_VERSION_STRING; }
 
 }  // namespace tubebin

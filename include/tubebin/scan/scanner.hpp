@@ -16,4 +16,7 @@ struct Scan {
 /// (within float32 of the exact position).
 Scan scan(const Scene& scene);
 
+/// "3.13.5": the Embree that was compiled in.
+const char* embree_version();
+
 }  // namespace tubebin
