@@ -7,8 +7,8 @@
 namespace tubebin {
 namespace {
 
-/// A join is ruled out where the scan is e^12 times likelier without it.
-constexpr double kCostLimit = 12.0;
+/// A join is ruled out where the scan is e^9 times likelier without it.
+constexpr double kCostLimit = 9.0;
 /// log of how seldom (1 in 100) a place that a tube takes up is measured as empty: at silhouettes, by a bend of the
 /// hidden stretch.
 constexpr double kEmptyCost = 4.6;
@@ -60,15 +60,24 @@ double shape_cost(const PieceEnd& a, const PieceEnd& b, double bending_rate, dou
   return join + unseen - other;
 }
 
+Eigen::AlignedBox3d box_of(const std::vector<Vec3>& nodes) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& node : nodes) box.extend(node);
+  return box;
+}
+
 /// Two tubes cannot occupy one place: how far the bridge comes nearer than two radii to another piece's centreline,
 /// against how well its course is known (between its ends, the random walk's deviation q D^3 / 192 at the middle).
-double collision_cost(const std::vector<Vec3>& bridge, const std::vector<TubePiece>& pieces, std::size_t piece_a,
-                      std::size_t piece_b, double bending_rate) {
+double collision_cost(const std::vector<Vec3>& bridge, const std::vector<TubePiece>& pieces,
+                      const std::vector<Eigen::AlignedBox3d>& boxes, std::size_t piece_a, std::size_t piece_b,
+                      double bending_rate) {
   const double gap = (bridge.back() - bridge.front()).norm();
+  const Eigen::AlignedBox3d own_box = box_of(bridge);
   double cost = 0.0;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     if (k == piece_a || k == piece_b || is_fragment(pieces[k])) continue;
     const double radius = pieces[k].radius;
+    if (own_box.squaredExteriorDistance(boxes[k]) > 4.0 * radius * radius) continue;
     double deepest = 0.0;
     for (const Vec3& p : bridge) deepest = std::max(deepest, 2.0 * radius - distance_to_polyline(p, pieces[k].nodes));
     const double sigma = std::hypot(0.2 * radius, std::sqrt(bending_rate * gap * gap * gap / 192.0));
@@ -153,7 +162,11 @@ std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pi
   const double radius = pieces.front().radius;
   const double density = static_cast<double>(ends.size()) / bounding_volume(ends, radius);
   std::vector<double> lengths;
-  for (const TubePiece& piece : pieces) lengths.push_back(piece.length());
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const TubePiece& piece : pieces) {
+    lengths.push_back(piece.length());
+    boxes.push_back(box_of(piece.nodes));
+  }
   for (std::uint32_t a = 0; a < ends.size(); ++a)
     for (std::uint32_t b = a + 1; b < ends.size(); ++b) {
       if (a / 2 == b / 2) continue;
@@ -167,7 +180,7 @@ std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pi
       const StretchEvidence seen = occlusion.along(bridge);
       cost += kEmptyCost * seen.empty * std::max(gap / (2.0 * radius), 1.0);
       if (!(cost < kCostLimit)) continue;
-      cost += collision_cost(bridge, pieces, a / 2, b / 2, bending_rate);
+      cost += collision_cost(bridge, pieces, boxes, a / 2, b / 2, bending_rate);
       if (!(cost < kCostLimit)) continue;
       auto absorbed = absorbed_fragments(bridge, ends[a], ends[b], pieces, a / 2, b / 2);
       candidates.push_back(

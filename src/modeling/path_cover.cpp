@@ -1,6 +1,7 @@
 #include "tubebin/modeling/path_cover.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -11,142 +12,177 @@ namespace {
 
 using Compatible = std::function<bool(std::uint32_t, std::uint32_t)>;
 
-/// Branch and bound over the items of one part.
+/// One part of the problem: items that candidates link, and those candidates.
 class PartSolver {
  public:
-  PartSolver(std::span<const PathCandidate> candidates, const Compatible& compatible,
-             const std::vector<std::vector<std::uint32_t>>& candidates_of_item, std::vector<std::uint32_t> items,
-             std::size_t node_limit)
-      : candidates_(candidates), compatible_(compatible), candidates_of_item_(candidates_of_item),
-        items_(std::move(items)), nodes_left_(node_limit) {
-    covered_.assign(candidates_of_item.size(), false);
-    // The least that an item can cost: a path's cost, shared evenly by its items, over all paths through it. No cover
-    // of a set of items is cheaper than the sum of these.
-    share_.assign(candidates_of_item.size(), 0.0);
-    for (const std::uint32_t item : items_) {
-      share_[item] = std::numeric_limits<double>::infinity();
-      for (const std::uint32_t c : candidates_of_item_[item])
-        share_[item] = std::min(share_[item], candidates_[c].cost / double(candidates_[c].items.size()));
-    }
+  PartSolver(std::span<const PathCandidate> candidates, const Compatible& compatible, std::vector<std::uint32_t> items,
+             std::vector<std::uint32_t> open, std::size_t item_count, std::size_t node_limit)
+      : candidates_(candidates),
+        compatible_(compatible),
+        items_(std::move(items)),
+        open_(std::move(open)),
+        nodes_left_(node_limit),
+        price_(item_count, 0.0),
+        covered_(item_count, false),
+        candidates_of_item_(item_count) {
+    for (const std::uint32_t i : items_) price_[i] = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t c : open_)
+      for (const std::uint32_t i : candidates_[c].items)
+        price_[i] = std::min(price_[i], candidates_[c].cost / double(candidates_[c].items.size()));
   }
 
   std::vector<std::uint32_t> solve() {
     take_greedily();
-    double bound = 0.0;
-    for (const std::uint32_t item : items_) bound += share_[item];
-    branch(0.0, bound);
+    raise_prices();
+    keep_promising();
+    branch(0.0, bound_);
     return best_;
   }
 
  private:
-  bool fits(std::uint32_t candidate) const {
-    for (const std::uint32_t item : candidates_[candidate].items)
+  double reduced_cost(std::uint32_t c) const {
+    double cost = candidates_[c].cost;
+    for (const std::uint32_t i : candidates_[c].items) cost -= price_[i];
+    return cost;
+  }
+
+  bool fits(std::uint32_t c) const {
+    for (const std::uint32_t item : candidates_[c].items)
       if (covered_[item]) return false;
-    for (const std::uint32_t other : chosen_)
-      if (!compatible_(candidate, other)) return false;
-    return true;
+    return std::all_of(chosen_.begin(), chosen_.end(), [&](std::uint32_t other) { return compatible_(c, other); });
   }
 
-  void cover(std::uint32_t candidate, bool covered) {
-    for (const std::uint32_t item : candidates_[candidate].items) covered_[item] = covered;
-    if (covered) chosen_.push_back(candidate);
-    else chosen_.pop_back();
+  void choose(std::uint32_t c) {
+    for (const std::uint32_t item : candidates_[c].items) covered_[item] = true;
+    chosen_.push_back(c);
+  }
+  void take_back() {
+    for (const std::uint32_t item : candidates_[chosen_.back()].items) covered_[item] = false;
+    chosen_.pop_back();
   }
 
-  /// A first cover: paths in order of what they save against their items standing alone.
-  void take_greedily() {
-    std::vector<std::pair<double, std::uint32_t>> savings;
-    std::vector<double> alone(covered_.size(), 0.0);
-    for (const std::uint32_t item : items_)
-      for (const std::uint32_t c : candidates_of_item_[item])
-        if (candidates_[c].items.size() == 1) alone[item] = candidates_[c].cost;
-    for (const std::uint32_t item : items_)
-      for (const std::uint32_t c : candidates_of_item_[item]) {
-        if (candidates_[c].items.front() != item) continue;
-        double saving = -candidates_[c].cost;
-        for (const std::uint32_t i : candidates_[c].items) saving += alone[i];
-        savings.emplace_back(-saving, c);
-      }
-    std::sort(savings.begin(), savings.end());
-    double cost = 0.0;
-    for (const auto& [negative_saving, c] : savings) {
-      if (!fits(c)) continue;
-      cover(c, true);
-      cost += candidates_[c].cost;
-    }
+  void keep_if_best(double cost) {
+    if (cost >= best_cost_ - 1e-9) return;
     best_ = chosen_;
     best_cost_ = cost;
-    while (!chosen_.empty()) cover(chosen_.back(), false);
   }
 
-  /// `cost` of what is chosen, `bound`: the least that the uncovered items can still cost.
+  /// A cover: the candidates that cost least against their items' prices first.
+  void take_greedily() {
+    std::vector<std::pair<double, std::uint32_t>> order;
+    for (const std::uint32_t c : open_) order.emplace_back(reduced_cost(c), c);
+    std::sort(order.begin(), order.end());
+    double cost = 0.0;
+    for (const auto& [reduced, c] : order) {
+      if (!fits(c)) continue;
+      choose(c);
+      cost += candidates_[c].cost;
+    }
+    keep_if_best(cost);
+    while (!chosen_.empty()) take_back();
+  }
+
+  /// Lagrangian relaxation (Fisher 1981): each item has a price; what the items are worth together, less what
+  /// candidates undercut their items' prices by, bounds every cover from below. Prices of items that are covered too
+  /// often fall and those of uncovered ones rise (subgradient steps of Polyak's length), which raises the bound.
+  void raise_prices() {
+    constexpr int kSteps = 300;
+    double agility = 1.0;
+    int stale = 0;
+    std::vector<double> best_prices = price_;
+    bound_ = -std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kSteps; ++step) {
+      std::vector<int> surplus(price_.size(), 0);
+      double bound = 0.0;
+      for (const std::uint32_t i : items_) bound += price_[i];
+      for (const std::uint32_t c : open_) {
+        const double reduced = reduced_cost(c);
+        if (reduced >= 0.0) continue;
+        bound += reduced;
+        for (const std::uint32_t i : candidates_[c].items) ++surplus[i];
+      }
+      if (bound > bound_ + 1e-6) bound_ = bound, best_prices = price_, stale = 0;
+      else if (++stale == 10) agility /= 2.0, stale = 0;
+      double squares = 0.0;
+      for (const std::uint32_t i : items_) squares += (1 - surplus[i]) * (1 - surplus[i]);
+      if (squares == 0.0 || best_cost_ - bound_ < 1e-6) break;
+      const double length = agility * std::max(best_cost_ - bound, 0.1) / squares;
+      for (const std::uint32_t i : items_) price_[i] += length * (1 - surplus[i]);
+      if (step % 10 == 9) take_greedily();
+    }
+    price_ = best_prices;
+    take_greedily();
+  }
+
+  /// A candidate whose reduced cost exceeds the gap between the best cover and the bound is in no better cover.
+  void keep_promising() {
+    std::vector<std::pair<double, std::uint32_t>> promising;
+    for (const std::uint32_t c : open_)
+      if (const double reduced = reduced_cost(c); reduced < best_cost_ - bound_ + 1e-9) promising.emplace_back(reduced, c);
+    std::sort(promising.begin(), promising.end());
+    for (const auto& [reduced, c] : promising)
+      for (const std::uint32_t i : candidates_[c].items) candidates_of_item_[i].push_back(c);
+  }
+
+  /// `bound`: the least that a cover with what is chosen can cost.
   void branch(double cost, double bound) {
-    if (nodes_left_ == 0 || cost + bound >= best_cost_ - 1e-9) return;
+    if (nodes_left_ == 0 || bound >= best_cost_ - 1e-9) return;
     --nodes_left_;
     // The uncovered item with the fewest ways on leaves the smallest tree.
-    std::uint32_t item = VoteVoxels::kNone;
-    std::vector<std::uint32_t> ways;
+    bool is_covered = true;
+    std::vector<std::uint32_t> ways, open;
     for (const std::uint32_t i : items_) {
       if (covered_[i]) continue;
-      std::vector<std::uint32_t> open;
+      open.clear();
       for (const std::uint32_t c : candidates_of_item_[i])
         if (fits(c)) open.push_back(c);
-      if (item == VoteVoxels::kNone || open.size() < ways.size()) {
-        item = i;
-        ways = std::move(open);
-        if (ways.size() <= 1) break;
-      }
+      if (is_covered || open.size() < ways.size()) ways = open;
+      is_covered = false;
+      if (ways.size() <= 1) break;
     }
-    if (item == VoteVoxels::kNone) {
-      best_ = chosen_;
-      best_cost_ = cost;
+    if (is_covered) {
+      keep_if_best(cost);
       return;
     }
-    for (const std::uint32_t c : ways) {  // cheapest for its items first: candidates_of_item_ is in that order
-      double left = bound;
-      for (const std::uint32_t i : candidates_[c].items) left -= share_[i];
-      cover(c, true);
-      branch(cost + candidates_[c].cost, left);
-      cover(c, false);
+    for (const std::uint32_t c : ways) {
+      choose(c);
+      branch(cost + candidates_[c].cost, bound + std::max(reduced_cost(c), 0.0));
+      take_back();
     }
   }
 
   std::span<const PathCandidate> candidates_;
   const Compatible& compatible_;
-  const std::vector<std::vector<std::uint32_t>>& candidates_of_item_;
-  std::vector<std::uint32_t> items_;
+  std::vector<std::uint32_t> items_, open_;
   std::size_t nodes_left_;
-  std::vector<double> share_;
+  std::vector<double> price_;
   std::vector<bool> covered_;
+  std::vector<std::vector<std::uint32_t>> candidates_of_item_;  ///< the promising ones, cheapest first
   std::vector<std::uint32_t> chosen_, best_;
   double best_cost_ = std::numeric_limits<double>::infinity();
+  double bound_ = 0.0;
 };
 
 }  // namespace
 
 std::vector<std::uint32_t> cheapest_path_cover(std::size_t item_count, std::span<const PathCandidate> candidates,
                                                const Compatible& compatible, std::size_t node_limit) {
-  std::vector<std::vector<std::uint32_t>> candidates_of_item(item_count);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
-  for (std::uint32_t c = 0; c < candidates.size(); ++c) {
-    for (const std::uint32_t item : candidates[c].items) {
-      candidates_of_item[item].push_back(c);
-      links.emplace_back(candidates[c].items.front(), item);
-    }
-  }
-  const auto share = [&](std::uint32_t c) { return candidates[c].cost / double(candidates[c].items.size()); };
-  for (auto& list : candidates_of_item)
-    std::stable_sort(list.begin(), list.end(), [&](std::uint32_t a, std::uint32_t b) { return share(a) < share(b); });
-
+  for (const PathCandidate& candidate : candidates)
+    for (const std::uint32_t item : candidate.items) links.emplace_back(candidate.items.front(), item);
   const std::vector<std::uint32_t> part_of_item = connected_components(item_count, links);
-  std::vector<std::vector<std::uint32_t>> parts;
+  std::vector<std::vector<std::uint32_t>> items, open;
   for (std::uint32_t i = 0; i < item_count; ++i) {
-    if (part_of_item[i] >= parts.size()) parts.resize(part_of_item[i] + 1);
-    parts[part_of_item[i]].push_back(i);
+    if (part_of_item[i] >= items.size()) items.resize(part_of_item[i] + 1);
+    items[part_of_item[i]].push_back(i);
   }
+  open.resize(items.size());
+  for (std::uint32_t c = 0; c < candidates.size(); ++c) open[part_of_item[candidates[c].items.front()]].push_back(c);
+
   std::vector<std::uint32_t> cover;
-  for (const auto& part : parts) {
-    const auto chosen = PartSolver(candidates, compatible, candidates_of_item, part, node_limit).solve();
+  for (std::size_t part = 0; part < items.size(); ++part) {
+    const auto chosen =
+        PartSolver(candidates, compatible, items[part], open[part], item_count, node_limit).solve();
     cover.insert(cover.end(), chosen.begin(), chosen.end());
   }
   std::sort(cover.begin(), cover.end());

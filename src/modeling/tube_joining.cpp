@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
+#include <unordered_map>
 
+#include "tubebin/core/random.hpp"
 #include "tubebin/modeling/path_cover.hpp"
 
 namespace tubebin {
@@ -18,6 +19,8 @@ constexpr double kShortCostLimit = 10.0;
 /// A fragment that no tube explains is as likely chance as not: e^-3.
 constexpr double kFragmentCostLimit = 3.0;
 constexpr std::size_t kNodeLimit = 2000;
+/// The right join is among an end's cheapest few, or it could not be told from chance anyhow.
+constexpr std::size_t kJoinsPerEnd = 5;
 constexpr std::size_t kPathLimit = 1000;
 
 /// A chain of pieces under construction: enters its last piece at one end and may leave it by the other.
@@ -27,6 +30,7 @@ struct Chain {
   std::vector<std::uint32_t> joins;  ///< candidates used
   std::uint32_t first_end = 0;       ///< where the tube starts
   std::uint32_t last_end = 0;        ///< where it ends so far
+  std::uint64_t key = 0;             ///< the items' keys, xor: the same for the same items in any order (Zobrist 1970)
   double join_cost = 0.0;
   double length = 0.0;               ///< of pieces and bridges, metres
   double bridged = 0.0;              ///< of bridges alone, metres
@@ -36,13 +40,15 @@ class Joiner {
  public:
   Joiner(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length)
       : pieces_(pieces), tube_length_(tube_length), radius_(pieces.front().radius) {
-    for (const TubePiece& piece : pieces) lengths_.push_back(piece.length());
+    for (const TubePiece& piece : pieces) {
+      lengths_.push_back(piece.length());
+      piece_keys_.push_back(derive_seed({piece_keys_.size()}));
+    }
     bending_rate_ = estimate_bending_rate(pieces, radius_);
     ends_ = find_piece_ends(pieces, occlusion, 40.0 * radius_);
     joins_ = find_join_candidates(pieces, ends_, occlusion, bending_rate_, longest());
     joins_of_end_.resize(ends_.size());
-    for (std::uint32_t j = 0; j < joins_.size(); ++j)
-      for (const std::uint32_t end : {joins_[j].end_a, joins_[j].end_b}) joins_of_end_[end].push_back(j);
+    keep_cheapest_joins();
     find_colliding_joins();
   }
 
@@ -54,6 +60,7 @@ class Joiner {
       Chain chain;
       chain.path.items = {end / 2};
       chain.pieces = {end / 2};
+      chain.key = piece_keys_[end / 2];
       chain.first_end = end;
       chain.last_end = end ^ 1U;
       chain.length = lengths_[end / 2];
@@ -133,6 +140,8 @@ class Joiner {
           chain.join_cost + length_cost(chain) + end_cost(chain.first_end) + end_cost(chain.last_end);
     }
     for (const std::uint32_t j : joins_of_end_[chain.last_end]) {
+      // Without a length to explain, a join has to be likelier than not by itself.
+      if (tube_length_ <= 0.0 && joins_[j].cost > 0.0) break;
       const std::uint32_t entered = joins_[j].end_a == chain.last_end ? joins_[j].end_b : joins_[j].end_a;
       const std::uint32_t piece = entered / 2;
       const auto taken = [&](std::uint32_t k) {
@@ -143,6 +152,8 @@ class Joiner {
       if (chain.length + gap + lengths_[piece] > longest()) continue;
       Chain next = chain;
       next.pieces.push_back(piece);
+      next.key ^= piece_keys_[piece];
+      for (const std::uint32_t fragment : joins_[j].absorbed) next.key ^= piece_keys_[fragment];
       next.path.items.push_back(piece);
       next.path.items.insert(next.path.items.end(), joins_[j].absorbed.begin(), joins_[j].absorbed.end());
       next.joins.push_back(j);
@@ -157,38 +168,45 @@ class Joiner {
   /// Drops the chains that no best cover needs: of those that hold the same pieces all but the cheapest, and those that
   /// cost no less than their two parts do when cut at one of their joins.
   void drop_dominated() {
-    using Items = std::vector<std::uint32_t>;
-    const auto sorted = [](Items items) {
-      std::sort(items.begin(), items.end());
-      return items;
-    };
-    std::map<Items, std::size_t> best;
+    std::unordered_map<std::uint64_t, std::size_t> best;
     for (std::size_t c = 0; c < chains_.size(); ++c) {
-      const auto [entry, added] = best.emplace(sorted(chains_[c].path.items), c);
+      const auto [entry, added] = best.emplace(chains_[c].key, c);
       if (!added && chains_[c].path.cost < chains_[entry->second].path.cost) entry->second = c;
     }
-    const auto cost_of = [&](const Items& items) {
-      const auto entry = best.find(sorted(items));
+    const auto cost_of = [&](std::uint64_t key) {
+      const auto entry = best.find(key);
       return entry == best.end() ? std::numeric_limits<double>::infinity() : chains_[entry->second].path.cost;
     };
     const auto better_cut = [&](const Chain& chain) {
+      std::uint64_t front = 0;
       for (std::size_t cut = 0; cut < chain.joins.size(); ++cut) {
-        Items front, back;
+        front ^= piece_keys_[chain.pieces[cut]];
         double cost = 0.0;
-        for (std::size_t k = 0; k < chain.pieces.size(); ++k) (k <= cut ? front : back).push_back(chain.pieces[k]);
-        for (std::size_t j = 0; j < chain.joins.size(); ++j)
-          for (const std::uint32_t fragment : joins_[chain.joins[j]].absorbed) {
-            if (j == cut) cost += cost_of({fragment});
-            else (j < cut ? front : back).push_back(fragment);
-          }
-        if (cost + cost_of(front) + cost_of(back) <= chain.path.cost) return true;
+        std::uint64_t between = 0;
+        for (const std::uint32_t fragment : joins_[chain.joins[cut]].absorbed) {
+          between ^= piece_keys_[fragment];
+          cost += cost_of(piece_keys_[fragment]);
+        }
+        if (cost + cost_of(front) + cost_of(chain.key ^ front ^ between) <= chain.path.cost) return true;
+        front ^= between;
       }
       return false;
     };
     std::vector<Chain> kept;
-    for (const auto& [key, c] : best)
-      if (!better_cut(chains_[c])) kept.push_back(chains_[c]);
+    for (std::size_t c = 0; c < chains_.size(); ++c)
+      if (best.at(chains_[c].key) == c && !better_cut(chains_[c])) kept.push_back(chains_[c]);
     chains_ = std::move(kept);
+  }
+
+  void keep_cheapest_joins() {
+    std::vector<std::size_t> better(ends_.size(), 0);
+    std::erase_if(joins_, [&](const JoinCandidate& join) {  // cheapest first
+      const bool is_far_down = better[join.end_a] >= kJoinsPerEnd && better[join.end_b] >= kJoinsPerEnd;
+      if (!is_far_down) ++better[join.end_a], ++better[join.end_b];
+      return is_far_down;
+    });
+    for (std::uint32_t j = 0; j < joins_.size(); ++j)
+      for (const std::uint32_t end : {joins_[j].end_a, joins_[j].end_b}) joins_of_end_[end].push_back(j);
   }
 
   void find_colliding_joins() {
@@ -237,6 +255,7 @@ class Joiner {
   double radius_;
   double bending_rate_ = 0.0;
   std::vector<double> lengths_;
+  std::vector<std::uint64_t> piece_keys_;
   std::vector<PieceEnd> ends_;
   std::vector<JoinCandidate> joins_;
   std::vector<std::vector<std::uint32_t>> joins_of_end_;
