@@ -2,6 +2,7 @@
 
 #include "tubebin/modeling/centerline_fitting.hpp"
 #include "tubebin/modeling/centerline_segmentation.hpp"
+#include "tubebin/modeling/flat_ends.hpp"
 #include "tubebin/modeling/piece_cleaning.hpp"
 #include "tubebin/modeling/view_grid.hpp"
 
@@ -45,12 +46,17 @@ std::vector<TubePiece> find_centerline_pieces(const FilteredCloud& cloud, const 
   std::vector<TubePiece> pieces = fit_segments(cloud, segments, projection, radius);
   drop_explained_pieces(pieces, cloud.points, cloud.spacing);
 
-  const Segment unexplained = unexplained_points(cloud.points, pieces, cloud.spacing);
-  const FilteredCloud rest = part_of(cloud, unexplained, projection, radius);
+  Segment unexplained = unexplained_points(cloud.points, pieces, cloud.spacing);
+  FilteredCloud rest = part_of(cloud, unexplained, projection, radius);
+  fit_flat_ends(pieces, cloud, rest);
+
+  unexplained = unexplained_points(cloud.points, pieces, cloud.spacing);
+  rest = part_of(cloud, unexplained, projection, radius);
   for (TubePiece& piece : fit_segments(rest, segment_by_votes(rest, radius), projection, radius)) {
     for (std::uint32_t& i : piece.points) i = unexplained[i];
     pieces.push_back(std::move(piece));
   }
+  fit_flat_ends(pieces, cloud, rest);
   cut_overlaps(pieces);
   return pieces;
 }

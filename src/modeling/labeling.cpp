@@ -112,11 +112,15 @@ class CylinderGrid {
 
 }  // namespace
 
-double distance_to_surface(const TubeSurface& surface, const Vec3& point) {
-  float nearest = std::numeric_limits<float>::infinity();
-  for (const SolidCylinder& c : solid_cylinders(surface, 0))
-    nearest = std::min(nearest, c.signed_distance(point.cast<float>()));
-  return nearest;
+std::vector<double> distances_to_surface(const TubeSurface& surface, std::span<const Vec3> points) {
+  const std::vector<SolidCylinder> cylinders = solid_cylinders(surface, 0);
+  std::vector<double> distances;
+  for (const Vec3& point : points) {
+    float nearest = std::numeric_limits<float>::infinity();
+    for (const SolidCylinder& c : cylinders) nearest = std::min(nearest, c.signed_distance(point.cast<float>()));
+    distances.push_back(double(nearest));
+  }
+  return distances;
 }
 
 std::vector<NearestSurface> nearest_surfaces(std::span<const Point> points, const std::vector<TubeSurface>& surfaces,

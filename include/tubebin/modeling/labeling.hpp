@@ -16,8 +16,8 @@ struct TubeSurface {
   double radius = 0.0;
 };
 
-/// Distance of a point to the surface, metres; negative inside.
-double distance_to_surface(const TubeSurface& surface, const Vec3& point);
+/// Distances of points to the surface, metres; negative inside.
+std::vector<double> distances_to_surface(const TubeSurface& surface, std::span<const Vec3> points);
 
 struct NearestSurface {
   static constexpr std::uint32_t kNone = UINT32_MAX;
