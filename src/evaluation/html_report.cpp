@@ -43,6 +43,8 @@ caption { text-align: left; font-weight: 600; padding: 0 0 .4rem; white-space: n
 th, td { padding: .25rem .6rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
 th { border-bottom-color: var(--ink); white-space: nowrap; }
 .number { text-align: right; white-space: nowrap; }
+td:first-child { min-width: 7rem; }
+td:last-child { white-space: nowrap; }
 tbody tr:hover { background: #f3f6fa; }
 .scene { margin: 0 0 1.5rem; break-inside: avoid; }
 .pictures { display: grid; grid-template-columns: repeat(3, 1fr); gap: .5rem; }
@@ -52,7 +54,7 @@ figcaption { font-size: .85rem; color: var(--soft); padding-top: .2rem; }
 pre { overflow-x: auto; background: #f6f7f9; border: 1px solid var(--line); border-radius: .5rem; padding: .75rem; font-size: .8rem; }
 summary { cursor: pointer; font-weight: 600; margin: .5rem 0; }
 .gaps { border-left: 4px solid #d55e00; padding: .25rem 0 .25rem .9rem; }
-@media (max-width: 40rem) { .pictures { grid-template-columns: 1fr; } h1 { font-size: 1.4rem; } }
+@media (max-width: 40rem) { .pictures { grid-template-columns: 1fr; } .plots svg { font-size: 20px; } h1 { font-size: 1.4rem; } }
 @media print { body { max-width: none; padding: 0; font-size: 10pt; } nav { display: none; } .table { overflow: visible; }
   table { font-size: 7.5pt; } th, td { padding: 1pt 3pt; } .plots figure, .card { break-inside: avoid; } }
 </style>

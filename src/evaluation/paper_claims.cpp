@@ -107,7 +107,8 @@ Claim falls_linearly(const Values& recall) {
     std::vector<std::vector<double>> groups;
     std::vector<double> means;
     for (const int tubes : recall.tubes(set, kFigure8Ratio)) {
-      if (set == "B" && tubes == 1) continue;  // the paper names it as an exception, which the third claim tests
+      if (set == "B" && tubes == 1)
+        continue;  // the paper names it as an exception, which the third claim tests
       x.push_back(tubes);
       groups.push_back(recall.at(set, kFigure8Ratio, tubes));
       means.push_back(mean(groups.back()));

@@ -72,10 +72,15 @@ Table paper_table_2(const std::vector<GroupSummary>& groups, const std::string& 
 std::vector<Table> paper_tables(const Evaluation& evaluation, const std::vector<GroupSummary>& groups,
                                 const GenerationSeconds& seconds) {
   std::vector<Table> tables;
-  if (!seconds.empty()) tables.push_back(claims_table("Claims of Section 6.1", generation_claims(seconds)));
+  const auto add_claims = [&](const std::string& title, const std::vector<Claim>& claims) {
+    const bool is_measured = std::any_of(claims.begin(), claims.end(), [](const Claim& claim) {
+      return claim.verdict != Verdict::not_measured;
+    });
+    if (is_measured) tables.push_back(claims_table(title, claims));
+  };
+  add_claims("Claims of Section 6.1", generation_claims(seconds));
   for (const std::string& method : methods_of(groups))
-    tables.push_back(claims_table(fmt::format("Claims of Section 6.2, {}", method),
-                                  modelling_claims(evaluation.runs, method)));
+    add_claims(fmt::format("Claims of Section 6.2, {}", method), modelling_claims(evaluation.runs, method));
   tables.push_back(paper_table_1(seconds));
   for (const std::string& method : methods_of(groups)) tables.push_back(paper_table_2(groups, method));
   std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });

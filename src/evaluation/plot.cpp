@@ -70,7 +70,7 @@ struct Axis {
 
 std::vector<double> log_ticks(double low, double high) {
   std::vector<double> ticks;
-  const bool few_decades = high / low < 200.0;
+  const bool few_decades = high / low < 2000.0;
   for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high * 1.0001; decade *= 10.0)
     for (const double step : few_decades ? std::vector<double>{1.0, 2.0, 5.0} : std::vector<double>{1.0})
       if (step * decade >= low * 0.9999 && step * decade <= high * 1.0001) ticks.push_back(step * decade);
@@ -125,18 +125,36 @@ std::string marker(double x, double y, const PlotSeries& series) {
       fmt::format("fill=\"{}\" stroke=\"{}\" stroke-width=\"1.6\"",
                   series.style == SeriesStyle::paper ? "#ffffff" : color_of(series), color_of(series));
   const double r = kMarker;
-  switch (series.color % 4) {
+  const auto polygon = [&](const std::vector<std::pair<double, double>>& corners) {
+    std::string points;
+    for (const auto& [dx, dy] : corners) points += fmt::format("{:.1f},{:.1f} ", x + dx * r, y + dy * r);
+    return fmt::format("<polygon points=\"{}\" {}/>", points, paint);
+  };
+  switch (series.color % 6) {
     case 0:
       return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" {}/>", x, y, r, paint);
     case 1:
       return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" {}/>",
                          x - 0.9 * r, y - 0.9 * r, 1.8 * r, 1.8 * r, paint);
     case 2:
-      return fmt::format("<path d=\"M{:.1f} {:.1f}l{:.1f} {:.1f}h{:.1f}z\" {}/>", x, y - 1.2 * r, 1.1 * r,
-                         2.0 * r, -2.2 * r, paint);
+      return polygon({{0.0, -1.2}, {1.1, 0.8}, {-1.1, 0.8}});
+    case 3:
+      return polygon({{0.0, -1.3}, {1.3, 0.0}, {0.0, 1.3}, {-1.3, 0.0}});
+    case 4:
+      return polygon({{0.0, 1.2}, {1.1, -0.8}, {-1.1, -0.8}});
     default:
-      return fmt::format("<path d=\"M{:.1f} {:.1f}l{:.1f} {:.1f}l{:.1f} {:.1f}l{:.1f} {:.1f}z\" {}/>", x,
-                         y - 1.3 * r, 1.3 * r, 1.3 * r, -1.3 * r, 1.3 * r, -1.3 * r, -1.3 * r, paint);
+      return polygon({{-0.4, -1.2},
+                      {0.4, -1.2},
+                      {0.4, -0.4},
+                      {1.2, -0.4},
+                      {1.2, 0.4},
+                      {0.4, 0.4},
+                      {0.4, 1.2},
+                      {-0.4, 1.2},
+                      {-0.4, 0.4},
+                      {-1.2, 0.4},
+                      {-1.2, -0.4},
+                      {-0.4, -0.4}});
   }
 }
 

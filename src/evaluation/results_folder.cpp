@@ -257,6 +257,8 @@ void read_folder(const std::string& folder, const ResultsOptions& options, Evalu
                     without_truth, scenes.size(), index.dataset));
   evaluation.source += (evaluation.source.empty() ? "" : ", ") + folder;
   evaluation.configuration += fmt::format("{}:\n{}\n", folder, index.configuration);
+  if (const std::string config = index.dataset + "/config.yaml"; fs::exists(config))
+    evaluation.configuration += fmt::format("\n{}:\n{}\n", config, read_file(config));
 }
 
 void require_distinct_runs(const Evaluation& evaluation) {

@@ -42,7 +42,7 @@ View make_view(const LabelledPoints& input) {
   for (Eigen::Vector2d& place : view.places) place = ((place - box.min()) * scale).array() + kMargin;
   view.width = static_cast<int>(box.sizes().x() * scale + 2.0 * kMargin);
   view.height = static_cast<int>(box.sizes().y() * scale + 2.0 * kMargin);
-  view.dot = std::clamp(static_cast<int>(std::ceil(scale / std::sqrt(std::max(input.ratio, 0.01)))), 1, 5);
+  view.dot = std::clamp(static_cast<int>(std::ceil(scale / std::sqrt(std::max(input.ratio, 0.01)))), 2, 5);
   return view;
 }
 
