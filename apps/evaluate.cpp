@@ -13,6 +13,7 @@
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/dataset/manifest.hpp"
+#include "tubebin/dataset/points_of_run.hpp"
 #include "tubebin/dataset/progress.hpp"
 #include "tubebin/evaluation/html_report.hpp"
 #include "tubebin/evaluation/predictions.hpp"
@@ -173,7 +174,7 @@ int evaluate_folders(const Arguments& arguments) {
                                   arguments.paper ? &generation : nullptr));
   print_gaps(evaluation);
   if (!arguments.html.empty())
-    write_file_atomically(arguments.html, format_html_report({evaluation, generation, read_points}));
+    write_file_atomically(arguments.html, format_html_report({evaluation, generation, points_of_run}));
   if (!arguments.plots.empty())
     write_plots(arguments.plots, paper_plots(summarize(evaluation.runs), generation));
   const bool is_complete = evaluation.missing.empty() && evaluation.failed.empty();

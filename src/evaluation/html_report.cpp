@@ -43,7 +43,7 @@ caption { text-align: left; font-weight: 600; padding: 0 0 .4rem; white-space: n
 th, td { padding: .25rem .6rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
 th { border-bottom-color: var(--ink); white-space: nowrap; }
 .number { text-align: right; white-space: nowrap; }
-td:first-child { min-width: 7rem; }
+td:first-child { min-width: 9rem; }
 td:last-child { white-space: nowrap; }
 tbody tr:hover { background: #f3f6fa; }
 .scene { margin: 0 0 1.5rem; break-inside: avoid; }
@@ -162,12 +162,12 @@ std::string pictures_html(const ReportInput& input) {
     if (!points) continue;
     const ScenePicture picture = draw_scene(*points);
     html += fmt::format(
-        "<div class=\"scene\"><h3>{}: micro-recall {:.4f}, {} tubes, {} found</h3>\n<div "
+        "<div class=\"scene\"><h3>{}: micro-recall {:.4f}, {}, {} found</h3>\n<div "
         "class=\"pictures\">\n",
-        escape_html(run->key.name()), run->micro_recall, run->scores.tubes.size(),
-        run->scores.predicted_tubes);
+        escape_html(run->key.name()), run->micro_recall,
+        count_of_tubes(static_cast<int>(run->scores.tubes.size())), run->scores.predicted_tubes);
     html += image(picture.truth, picture, "ground truth") +
-            image(picture.labels, picture, "labels, in the colour of the tube they are matched with") +
+            image(picture.labels, picture, "labels, coloured as the matched tubes") +
             image(picture.errors, picture, "wrong points orange, points without a label black") +
             "</div></div>\n";
   }

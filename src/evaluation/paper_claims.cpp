@@ -153,8 +153,8 @@ Claim a_above_b(const Values& recall) {
       kSeed);
   const std::size_t counts = groups.size() / 2;
   claim.here =
-      fmt::format("A above B at {} of {} numbers of tubes; A - B on average {}; least at {} tubes: {:+.4f}",
-                  above, counts, signed_interval(difference, 4), worst_tubes, worst);
+      fmt::format("A above B at {} of {} numbers of tubes; A - B on average {}; least with {}: {:+.4f}",
+                  above, counts, signed_interval(difference, 4), count_of_tubes(worst_tubes), worst);
   claim.verdict = verdict(above == static_cast<int>(counts));
   return claim;
 }
@@ -181,8 +181,9 @@ Claim ten_tubes_lowest(const Values& recall) {
     if (recall.has("B", kFigure8Ratio, tubes) &&
         recall.mean_at("B", kFigure8Ratio, tubes) < recall.mean_at("B", kFigure8Ratio, lowest))
       lowest = tubes;
-  claim.here = fmt::format("{:.4f} to {:.4f}: {}; lowest at {} tubes", recall.mean_at("B", kFigure8Ratio, 1),
-                           recall.mean_at("B", kFigure8Ratio, 10), percent_interval(change), lowest);
+  claim.here =
+      fmt::format("{:.4f} to {:.4f}: {}; lowest with {}", recall.mean_at("B", kFigure8Ratio, 1),
+                  recall.mean_at("B", kFigure8Ratio, 10), percent_interval(change), count_of_tubes(lowest));
   claim.verdict = verdict(change.high < 0.0 && lowest == 10);
   return claim;
 }
@@ -242,7 +243,7 @@ Claim time_rises_with_ratio(const Values& seconds, const std::string& set) {
     for (const double ratio : ratios) means.push_back(seconds.mean_at(set, ratio, tubes));
     const double correlation = rank_correlation(ratios, means);
     holds = holds && correlation >= kMonotone;
-    add_text(claim.here, fmt::format("{} tubes: x{:.1f} (rank correlation {:.2f})", tubes,
+    add_text(claim.here, fmt::format("{}: x{:.1f} (rank correlation {:.2f})", count_of_tubes(tubes),
                                      means.back() / means.front(), correlation));
   }
   if (measured) claim.verdict = verdict(holds);

@@ -104,13 +104,13 @@ Plot table_2(const std::vector<GroupSummary>& groups, const std::string& method)
             {}};
   int color = 0;
   for (const auto& [tubes, unused] : paper_figures().modelling_seconds.begin()->second) {
-    PlotSeries ours{fmt::format("here, {} tubes", tubes), color, SeriesStyle::measured, {}};
+    PlotSeries ours{"here, " + count_of_tubes(tubes), color, SeriesStyle::measured, {}};
     for (const GroupSummary& group : groups)
       if (group.key.method == method && group.key.set == "A" && group.key.tubes == tubes && group.seconds)
         ours.points.push_back(point(group.key.ratio, *group.seconds));
     if (ours.points.empty()) continue;
     plot.series.push_back(std::move(ours));
-    PlotSeries theirs{fmt::format("paper, {} tubes", tubes), color++, SeriesStyle::paper, {}};
+    PlotSeries theirs{"paper, " + count_of_tubes(tubes), color++, SeriesStyle::paper, {}};
     for (const auto& [ratio, by_tubes] : paper_figures().modelling_seconds)
       theirs.points.push_back(point(ratio, by_tubes.at(tubes)));
     plot.series.push_back(std::move(theirs));

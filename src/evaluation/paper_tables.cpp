@@ -53,7 +53,7 @@ Table paper_table_2(const std::vector<GroupSummary>& groups, const std::string& 
   };
   const auto& paper = paper_figures().modelling_seconds;
   for (const auto& [tubes, value] : paper.begin()->second) {
-    table.headers.push_back(fmt::format("{} tubes", tubes));
+    table.headers.push_back(count_of_tubes(tubes));
     table.headers.push_back("paper");
   }
   for (const auto& [ratio, by_tubes] : paper) {

@@ -104,6 +104,24 @@ void append_measures(const PooledScores& pooled, std::vector<Cell>& row) {
   row.push_back(pooled.centerlines > 0 ? millimetre_cell(pooled.centerline_truth_mean) : Cell());
 }
 
+/// The visibility table of each method with its classes as columns.
+std::vector<Table> visibility_tables(const Evaluation& evaluation) {
+  std::map<std::string, Table> by_method;
+  const Table all = visibility_table(evaluation);
+  for (const auto& row : all.rows) {
+    Table& table =
+        by_method.try_emplace(row[0].text, Table{all.title + ", " + row[0].text, all.headers, {}, all.note})
+            .first->second;
+    table.rows.push_back(row);
+  }
+  std::vector<Table> tables;
+  for (auto& [method, table] : by_method) {
+    for (auto& row : table.rows) row[0] = Cell();
+    tables.push_back(transpose(table, 2));
+  }
+  return tables;
+}
+
 std::vector<std::string> with_measures(std::vector<std::string> headers) {
   headers.insert(headers.end(), kMeasureHeaders.begin(), kMeasureHeaders.end());
   return headers;
@@ -166,7 +184,7 @@ Table figure_8_table(const std::vector<GroupSummary>& groups, const std::string&
 
 Table figure_9_table(const std::vector<GroupSummary>& groups, const std::string& method) {
   const int tubes = figure_conditions(groups).figure_9_tubes;
-  Table table{fmt::format("Mean micro-recall by ratio, {} tubes, {} (Figure 9)", tubes, method),
+  Table table{fmt::format("Mean micro-recall by ratio, {}, {} (Figure 9)", count_of_tubes(tubes), method),
               set_headers("ratio", groups),
               {},
               ""};
@@ -231,7 +249,7 @@ std::vector<Table> result_tables(const Evaluation& evaluation, const std::vector
     for (const std::string& set : sets_of(groups)) tables.push_back(recall_grid(groups, method, set));
     for (const std::string& set : sets_of(groups)) tables.push_back(time_grid(groups, method, set));
   }
-  tables.push_back(transpose(visibility_table(evaluation), 2));
+  for (Table& table : visibility_tables(evaluation)) tables.push_back(std::move(table));
   std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });
   return tables;
 }

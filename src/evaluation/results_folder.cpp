@@ -134,6 +134,7 @@ RunScore read_run(const std::string& folder, RunKey key, const SceneTruth* truth
   // Segments without a point in the filtered cloud are tubes of the model all the same.
   run.scores.predicted_tubes =
       std::max(run.scores.predicted_tubes, root.at("model_tubes").integer({0, kMaxPoints}));
+  run.folder = folder;
   if (fs::exists(folder + "/filtered.pcd") && fs::exists(folder + "/labeled.pcd")) {
     run.filtered = folder + "/filtered.pcd";
     run.labeled = folder + "/labeled.pcd";

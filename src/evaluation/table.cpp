@@ -53,6 +53,8 @@ Cell integer_cell(long long value) { return {fmt::format("{}", value), static_ca
 
 Cell number_cell(double value, int decimals) { return {fmt::format("{:.{}f}", value, decimals), value}; }
 
+std::string count_of_tubes(int count) { return fmt::format("{} tube{}", count, count == 1 ? "" : "s"); }
+
 Cell percent_cell(double share, int decimals) {
   return {fmt::format("{:.{}f} %", 100.0 * share, decimals), share};
 }
@@ -61,8 +63,7 @@ Table transpose(const Table& table, std::size_t name_columns) {
   Table result{table.title, {""}, {}, table.note};
   for (const auto& row : table.rows) {
     std::string name;
-    for (std::size_t i = 0; i < name_columns; ++i)
-      name += (i > 0 && !row[i].text.empty() ? " " : "") + row[i].text;
+    for (std::size_t i = 0; i < name_columns; ++i) name.append(name.empty() ? "" : " ").append(row[i].text);
     result.headers.push_back(std::move(name));
   }
   for (std::size_t i = name_columns; i < table.headers.size(); ++i) {

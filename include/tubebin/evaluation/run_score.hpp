@@ -48,6 +48,7 @@ struct RunScore {
       by_visibility;              ///< kVisibilityClasses of them; empty where the scene is not known
   std::optional<double> seconds;  ///< modelling time
   std::string dataset;            ///< the data set's folder; empty where the scene is not known
+  std::string folder;             ///< of a run of model_tubes
   std::string filtered;           ///< files of the clouds; empty where they were not kept
   std::string labeled;
 };

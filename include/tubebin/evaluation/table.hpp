@@ -29,6 +29,8 @@ struct Table {
 Cell integer_cell(long long value);
 /// With so many decimals.
 Cell number_cell(double value, int decimals);
+/// "1 tube", "5 tubes".
+std::string count_of_tubes(int count);
 /// A share of one in per cent.
 Cell percent_cell(double share, int decimals = 1);
 
