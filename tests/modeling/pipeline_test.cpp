@@ -1,0 +1,228 @@
+#include "tubebin/modeling/pipeline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "modeling/built_scene.hpp"
+#include "tubebin/core/error.hpp"
+
+namespace tubebin {
+namespace {
+
+constexpr double kR = kRadius;
+
+PlacedTube straight(const Vec3& from, const Vec3& to) {
+  std::vector<Vec3> nodes;
+  for (int i = 0; i <= 5; ++i) nodes.push_back(from + (to - from) * i / 5.0);
+  return tube_along(nodes);
+}
+
+Scene crossing() {
+  return scene_of({straight({-0.2, 0, kR}, {0.2, 0.02, kR}), straight({0.02, -0.15, 3 * kR}, {-0.02, 0.15, 3 * kR})});
+}
+
+Scene touching_side_by_side() {
+  return scene_of({straight({-0.2, -kR, kR}, {0.2, -kR, kR}), straight({-0.2, kR, kR}, {0.2, kR, kR})});
+}
+
+Scene one_over_three() {
+  return scene_of({straight({-0.2, 0, 3 * kR}, {0.2, 0, 3 * kR}), straight({-0.12, -0.15, kR}, {-0.12, 0.15, kR}),
+                   straight({0.0, -0.15, kR}, {0.0, 0.15, kR}), straight({0.12, -0.15, kR}, {0.12, 0.15, kR})});
+}
+
+Scene end_on_a_tube() {
+  // The second one's end touches the first one's side.
+  return scene_of({straight({-0.2, 0, kR}, {0.2, 0, kR}), straight({0.0, kR + 0.0002, kR}, {0.0, 0.15, kR})});
+}
+
+Scene bend_at_the_limit() {
+  const double c = std::cos(radians(45.0));
+  return scene_of({tube_along({Vec3(-0.2, -0.05, kR), Vec3(-0.05, -0.05, kR), Vec3(-0.05 + 0.1 * c, -0.05 + 0.1 * c, kR),
+                               Vec3(-0.05 + 0.1 * c, 0.05 + 0.1 * c, kR)})});
+}
+
+/// The upper tube hides the middle of the lower one.
+Scene in_two_pieces() {
+  return scene_of({straight({-0.22, 0, kR}, {0.22, 0, kR}), straight({0.0, -0.15, 3 * kR}, {0.0, 0.15, 3 * kR})});
+}
+
+/// The labels renamed 1, 2, ... in order of their first point.
+std::vector<Label> canonical(std::vector<Label> labels) {
+  std::map<Label, Label> names = {{0, 0}};
+  for (Label& label : labels) label = names.try_emplace(label, static_cast<Label>(names.size())).first->second;
+  return labels;
+}
+
+struct Expectation {
+  const char* name;
+  Scene (*build)();
+  double centerline_noise_free;  ///< micro-recall
+  double region_growing;
+};
+
+std::ostream& operator<<(std::ostream& out, const Expectation& e) { return out << e.name; }
+
+class BuiltScene : public ::testing::TestWithParam<Expectation> {};
+
+TEST_P(BuiltScene, TheCenterlineMethodFindsEachTube) {
+  const Scene scene = GetParam().build();
+  const Cloud cloud = scan(scene).cloud;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
+  ASSERT_EQ(result.tubes.size(), scene.tubes.size());
+  EXPECT_GE(micro_recall_of(result, cloud), GetParam().centerline_noise_free);
+  for (const TubeModel& model : result.tubes) {
+    double nearest = 1.0;
+    for (const PlacedTube& tube : scene.tubes) nearest = std::min(nearest, farthest_node(model, tube));
+    EXPECT_LT(nearest, 0.5 * kR);  // ends beside another tube may reach a little beyond the true one
+  }
+}
+
+TEST_P(BuiltScene, NoiseCostsLittle) {
+  const Scene scene = GetParam().build();
+  Cloud cloud = scan(scene).cloud;
+  add_range_noise(cloud, 0.0003, 5);
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
+  EXPECT_EQ(result.tubes.size(), scene.tubes.size());
+  EXPECT_GE(micro_recall_of(result, cloud), GetParam().centerline_noise_free - 0.01);
+}
+
+TEST_P(BuiltScene, RegionGrowingLabelsMostPoints) {
+  const Scene scene = GetParam().build();
+  const Cloud cloud = scan(scene).cloud;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius(ModelingMethod::region_growing));
+  EXPECT_GE(micro_recall_of(result, cloud), GetParam().region_growing);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, BuiltScene,
+                         ::testing::Values(Expectation{"crossing", crossing, 0.995, 0.55},
+                                           Expectation{"touching_side_by_side", touching_side_by_side, 0.99, 0.55},
+                                           Expectation{"one_over_three", one_over_three, 0.995, 0.55},
+                                           Expectation{"end_on_a_tube", end_on_a_tube, 0.99, 0.55},
+                                           Expectation{"bend_at_the_limit", bend_at_the_limit, 0.995, 0.55},
+                                           Expectation{"in_two_pieces", in_two_pieces, 0.995, 0.55}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(Pipeline, BridgesWhatAnotherTubeHides) {
+  const Scene scene = in_two_pieces();
+  const Cloud cloud = scan(scene).cloud;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
+  ASSERT_EQ(result.tubes.size(), 2u);
+  int bridged = 0;
+  for (const TubeModel& tube : result.tubes)
+    bridged += static_cast<int>(std::count(tube.bridged.begin(), tube.bridged.end(), true) > 0);
+  EXPECT_EQ(bridged, 1);
+  for (const TubeModel& tube : result.tubes) {
+    const double expected = std::abs(tube.length() - 0.44) < std::abs(tube.length() - 0.3) ? 0.44 : 0.3;
+    EXPECT_NEAR(tube.length(), expected, 0.006);
+  }
+}
+
+TEST(Pipeline, EstimatesTheRadiusThatNobodyStates) {
+  const Scene scene = one_over_three();
+  const Cloud cloud = scan(scene).cloud;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), ModelingOptions{});
+  EXPECT_NEAR(result.radius, kR, 0.02 * kR);
+  EXPECT_EQ(result.tubes.size(), 4u);
+}
+
+TEST(Pipeline, KeepsTheStatedShareOfThePoints) {
+  const Scene scene = crossing();
+  const Cloud cloud = scan(scene).cloud;
+  ModelingOptions options = known_radius();
+  const std::size_t all = model_tubes(input_of(cloud, scene.bin), options).source.size();
+  options.filtering.ratio = 0.3;
+  const ModelingResult some = model_tubes(input_of(cloud, scene.bin), options);
+  EXPECT_EQ(some.source.size(), static_cast<std::size_t>(std::lround(0.3 * static_cast<double>(all))));
+  EXPECT_GE(micro_recall_of(some, cloud), 0.99);
+}
+
+TEST(Pipeline, TheSeedGivesTheSameResultAgain) {
+  const Scene scene = one_over_three();
+  const Cloud cloud = scan(scene).cloud;
+  for (const ModelingMethod method : {ModelingMethod::centerline, ModelingMethod::region_growing}) {
+    ModelingOptions options = known_radius(method);
+    options.filtering.ratio = 0.5;
+    const ModelingResult a = model_tubes(input_of(cloud, scene.bin), options);
+    const ModelingResult b = model_tubes(input_of(cloud, scene.bin), options);
+    EXPECT_EQ(a.source, b.source);
+    EXPECT_EQ(a.labels, b.labels);
+  }
+}
+
+TEST(Pipeline, TheOrderOfThePointsChangesNoLabel) {
+  const Scene scene = one_over_three();
+  const Cloud cloud = scan(scene).cloud;
+  std::vector<std::size_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  Random random(8);
+  for (std::size_t i = order.size() - 1; i > 0; --i)
+    std::swap(order[i], order[static_cast<std::size_t>(random.integer(0, static_cast<int>(i)))]);
+  Cloud shuffled = cloud;
+  for (std::size_t i = 0; i < order.size(); ++i) shuffled.points[i] = cloud.points[order[i]];
+
+  const ModelingResult a = model_tubes(input_of(cloud, scene.bin), known_radius());
+  const ModelingResult b = model_tubes(input_of(shuffled, scene.bin), known_radius());
+  std::vector<Label> label_a(cloud.size(), 0);
+  std::vector<Label> label_b(cloud.size(), 0);
+  for (std::size_t i = 0; i < a.source.size(); ++i) label_a[a.source[i]] = a.labels[i];
+  for (std::size_t i = 0; i < b.source.size(); ++i) label_b[order[b.source[i]]] = b.labels[i];
+  // Tubes may be numbered otherwise; the points of one tube stay together.
+  EXPECT_EQ(canonical(label_a), canonical(label_b));
+}
+
+TEST(Pipeline, ARigidMotionOfTheInputMovesTheResultWithIt) {
+  const Scene scene = one_over_three();
+  const Cloud cloud = scan(scene).cloud;
+  const Pose motion = make_pose(Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized())), {0.4, -0.2, 0.3});
+  Cloud moved = cloud;
+  for (Point& point : moved.points)
+    if (is_finite(point)) point = (motion * point.cast<double>()).cast<float>();
+  moved.world_from_sensor = motion * cloud.world_from_sensor;
+  ModelingInput input = input_of(moved, scene.bin);
+  input.world_from_bin = motion;
+
+  const ModelingResult a = model_tubes(input_of(cloud, scene.bin), known_radius());
+  const ModelingResult b = model_tubes(input, known_radius());
+  ASSERT_EQ(a.tubes.size(), b.tubes.size());
+  EXPECT_NEAR(micro_recall_of(a, cloud), micro_recall_of(b, cloud), 0.002);
+  for (const TubeModel& tube : a.tubes) {
+    double nearest = 1.0;
+    for (const TubeModel& other : b.tubes) {
+      double farthest = 0.0;
+      for (const Vec3& node : tube.nodes) farthest = std::max(farthest, distance_to_polyline(motion * node, other.nodes));
+      nearest = std::min(nearest, farthest);
+    }
+    EXPECT_LT(nearest, 0.001);
+  }
+}
+
+TEST(Pipeline, FindsTheTubesInABinThatNobodyDescribes) {
+  const Scene scene = one_over_three();
+  const Cloud cloud = scan(scene).cloud;
+  ModelingInput input = input_of(cloud, scene.bin);
+  input.bin.reset();
+  const ModelingResult result = model_tubes(input, known_radius());
+  EXPECT_EQ(result.tubes.size(), 4u);
+  EXPECT_GE(micro_recall_of(result, cloud), 0.97);
+}
+
+TEST(Pipeline, MakesNoTubesOfNoise) {
+  Random random(9);
+  std::vector<Point> points;
+  for (int i = 0; i < 5000; ++i)
+    points.emplace_back(static_cast<float>(random.uniform(-0.25, 0.25)), static_cast<float>(random.uniform(-0.15, 0.15)),
+                        static_cast<float>(random.uniform(0.01, 0.19)));
+  const ModelingInput input{.points = points, .world_from_sensor = Scanner{}.world_from_scanner(), .bin = Bin{}};
+  for (const ModelingMethod method : {ModelingMethod::centerline, ModelingMethod::region_growing})
+    EXPECT_TRUE(model_tubes(input, known_radius(method)).tubes.empty());
+}
+
+TEST(Pipeline, ACloudWithoutAPointInTheBinIsRefused) {
+  const std::vector<Point> points = {Point(5, 5, 0.1f), Point(6, 5, 0.1f)};
+  const ModelingInput input{.points = points, .world_from_sensor = Pose::Identity(), .bin = Bin{}};
+  EXPECT_THROW(model_tubes(input, known_radius()), IoError);
+}
+
+}  // namespace
+}  // namespace tubebin

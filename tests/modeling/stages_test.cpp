@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "tubebin/core/random.hpp"
+#include "tubebin/modeling/filtering.hpp"
+#include "tubebin/modeling/labeling.hpp"
+#include "tubebin/modeling/path_cover.hpp"
+
+namespace tubebin {
+namespace {
+
+/// The cheapest choice of candidates that holds each item once, by trying all.
+double cheapest_by_trying_all(std::size_t item_count, const std::vector<PathCandidate>& candidates) {
+  double cheapest = 1e18;
+  for (std::uint32_t chosen = 0; chosen < (1u << candidates.size()); ++chosen) {
+    std::vector<int> held(item_count, 0);
+    double cost = 0.0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (!(chosen >> i & 1u)) continue;
+      cost += candidates[i].cost;
+      for (const std::uint32_t item : candidates[i].items) ++held[item];
+    }
+    if (std::all_of(held.begin(), held.end(), [](int n) { return n == 1; })) cheapest = std::min(cheapest, cost);
+  }
+  return cheapest;
+}
+
+TEST(PathCover, IsTheCheapestOfAll) {
+  Random random(1);
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::uint32_t items = static_cast<std::uint32_t>(random.integer(2, 6));
+    std::vector<PathCandidate> candidates;
+    for (std::uint32_t i = 0; i < items; ++i) candidates.push_back({{i}, random.uniform(0.5, 2.0)});
+    for (int k = 0; k < 8; ++k) {
+      std::set<std::uint32_t> chosen;
+      const int length = random.integer(2, 3);
+      while (static_cast<int>(chosen.size()) < std::min<int>(length, static_cast<int>(items)))
+        chosen.insert(static_cast<std::uint32_t>(random.integer(0, static_cast<int>(items) - 1)));
+      candidates.push_back({{chosen.begin(), chosen.end()}, random.uniform(0.0, 3.0)});
+    }
+    const auto cover =
+        cheapest_path_cover(items, candidates, [](std::uint32_t, std::uint32_t) { return true; }, 100000);
+    double cost = 0.0;
+    std::vector<int> held(items, 0);
+    for (const std::uint32_t index : cover) {
+      cost += candidates[index].cost;
+      for (const std::uint32_t item : candidates[index].items) ++held[item];
+    }
+    EXPECT_TRUE(std::all_of(held.begin(), held.end(), [](int n) { return n == 1; }));
+    EXPECT_NEAR(cost, cheapest_by_trying_all(items, candidates), 1e-9);
+  }
+}
+
+TEST(PathCover, KeepsIncompatiblePathsApart) {
+  const std::vector<PathCandidate> candidates = {{{0}, 1.0}, {{1}, 1.0}, {{2}, 1.0}, {{3}, 1.0},
+                                                 {{0, 1}, 0.1}, {{2, 3}, 0.2}, {{1, 2}, 9.0}};
+  const auto cover = cheapest_path_cover(
+      4, candidates, [](std::uint32_t a, std::uint32_t b) { return !(a + b == 9 && a != b); }, 1000);
+  EXPECT_EQ(std::set<std::uint32_t>(cover.begin(), cover.end()), (std::set<std::uint32_t>{2, 3, 4}));
+}
+
+TEST(Labeling, DistancesMatchSampledSurfaces) {
+  const std::vector<Vec3> nodes = {Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0.15, 0.06, 0.02)};
+  const TubeSurface surface{nodes, 0.0125};
+  std::vector<Vec3> samples;
+  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+    const Vec3 axis = (nodes[i + 1] - nodes[i]).normalized();
+    const Vec3 u = axis.unitOrthogonal();
+    const Vec3 v = axis.cross(u);
+    for (int k = 0; k <= 200; ++k)
+      for (int a = 0; a < 120; ++a) {
+        const double angle = 2 * std::numbers::pi * a / 120;
+        const Vec3 ring = std::cos(angle) * u + std::sin(angle) * v;
+        samples.push_back(nodes[i] + (nodes[i + 1] - nodes[i]) * k / 200.0 + 0.0125 * ring);
+        if (k <= 20) samples.push_back((i == 0 ? nodes[0] : nodes[2]) + 0.0125 * k / 20.0 * ring);
+      }
+  }
+  Random random(2);
+  for (int trial = 0; trial < 300; ++trial) {
+    const Vec3 p(random.uniform(-0.03, 0.18), random.uniform(-0.04, 0.1), random.uniform(-0.04, 0.06));
+    const double distance = distance_to_surface(surface, p);
+    if (distance < 0.0 || (p - nodes[1]).norm() < 0.045) continue;  // inside, or nearest to the unsampled joint
+    double nearest = 1.0;
+    for (const Vec3& sample : samples) nearest = std::min(nearest, (sample - p).norm());
+    EXPECT_NEAR(distance, nearest, 0.0006);
+  }
+}
+
+TEST(Labeling, TakesTheNearestSurfaceWithinReach) {
+  const std::vector<Vec3> low = {Vec3(-0.1, 0, 0.0125), Vec3(0.1, 0, 0.0125)};
+  const std::vector<Vec3> high = {Vec3(0, -0.1, 0.0375), Vec3(0, 0.1, 0.0375)};
+  const std::vector<Point> points = {Point(0.05f, 0.0f, 0.0253f), Point(0.0f, 0.05f, 0.0505f), Point(0.05f, 0.05f, 0.0f)};
+  const auto nearest = nearest_surfaces(points, {{low, 0.0125}, {high, 0.0125}}, 0.006);
+  EXPECT_EQ(nearest[0].surface, 0u);
+  EXPECT_EQ(nearest[1].surface, 1u);
+  EXPECT_EQ(nearest[2].surface, NearestSurface::kNone);
+}
+
+TEST(Filtering, DownsamplingIsExactSeededAndBlindToTheOrder) {
+  Random random(3);
+  std::vector<Point> points;
+  for (int i = 0; i < 1000; ++i)
+    points.emplace_back(static_cast<float>(random.uniform(0, 1)), static_cast<float>(random.uniform(0, 1)), 0.0f);
+  std::vector<std::uint32_t> indices(points.size());
+  for (std::uint32_t i = 0; i < indices.size(); ++i) indices[i] = i;
+  const auto kept = downsample(points, indices, 0.3, 4);
+  EXPECT_EQ(kept.size(), 300u);
+  EXPECT_EQ(downsample(points, indices, 0.3, 4), kept);
+  EXPECT_NE(downsample(points, indices, 0.3, 5), kept);
+
+  std::vector<Point> reversed(points.rbegin(), points.rend());
+  std::set<float> xs;
+  std::set<float> reversed_xs;
+  for (const auto i : kept) xs.insert(points[i].x());
+  for (const auto i : downsample(reversed, indices, 0.3, 4)) reversed_xs.insert(reversed[i].x());
+  EXPECT_EQ(xs, reversed_xs);
+}
+
+TEST(Filtering, CropsFloorAndWalls) {
+  const Bin bin;
+  const std::vector<Point> points = {Point(0, 0, 0), Point(0, 0, 0.01f), Point(0.275f, 0, 0.1f), Point(0.2f, 0.1f, 0.1f),
+                                     Point(NAN, 0, 0), Point(0.27f, 0, 0.25f)};
+  const ModelingInput input{.points = points, .world_from_sensor = Scanner{}.world_from_scanner(), .bin = bin};
+  EXPECT_EQ(crop_bin(input, {}), (std::vector<std::uint32_t>{1, 3, 5}));
+}
+
+}  // namespace
+}  // namespace tubebin
