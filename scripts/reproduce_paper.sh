@@ -2,17 +2,20 @@
 # Repeats the paper's experiments and writes docs/reproduction.md: sets A and B (1 to 15 and 20 tubes, 20 cases each: 640
 # clouds), every cloud modelled at ten downsampling ratios by both methods, and everything set beside the paper.
 #
-# Usage: scripts/reproduce_paper.sh [--output DIR] [--cases N] [--slow-cases N] [--jobs N]
+# Usage: scripts/reproduce_paper.sh [--output DIR] [--cases N] [--slow-cases N] [--jobs N] [--published DIR]
 #   --output DIR      where clouds and results go, under 3 GB (default: results_reproduction)
 #   --cases N         cases for each number of tubes (default: 20, as in the paper)
 #   --slow-cases N    cases that region_growing models (default: as --cases)
 #   --jobs N          worker processes (default: one for each core); times are cleanest with no more than cores
+#   --published DIR   also compare with scenes of the published data set: a folder of its tube_configurations files,
+#                     named as A10_1.txt (set A, ten tubes, case 1)
 # After an interruption the same command goes on where it stopped.
 set -euo pipefail
 root=$(realpath "$(dirname "$0")/..")
 output=results_reproduction
 cases=20
 slow_cases=
+published=
 jobs=$(nproc)
 while [ $# -gt 0 ]; do
   case $1 in
@@ -20,6 +23,7 @@ while [ $# -gt 0 ]; do
     --cases) cases=$2 ;;
     --slow-cases) slow_cases=$2 ;;
     --jobs) jobs=$2 ;;
+    --published) published=$(realpath "$2") ;;
     -h | --help) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "$0"; exit 0 ;;
     *) echo "$0: unknown option $1; see --help" >&2; exit 2 ;;
   esac
@@ -46,8 +50,8 @@ part() {
 }
 
 build() {
-  cmake -S "$root" -B "$root/build" -G Ninja -DCMAKE_BUILD_TYPE=Release > /dev/null
-  cmake --build "$root/build" --target generate_dataset model_tubes evaluate
+  cmake -S "$root" -B "$root/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTUBEBIN_BENCH=ON > /dev/null
+  cmake --build "$root/build" --target generate_dataset model_tubes evaluate piles_table
 }
 
 generate() {  # SET
@@ -67,6 +71,22 @@ evaluate() {
   [ $status -eq 0 ] || [ $status -eq 3 ] || return $status
   "$bin/evaluate" "$output"/{centerline,region_growing}_{a,b} --format csv --quiet > "$root/docs/reproduction/groups.csv" ||
     [ $? -eq 3 ]
+  return $status
+}
+
+# The published scenes, scanned and modelled, and their piles beside ours in the same bin.
+published_scenes() {
+  local set status=0
+  for set in a b; do
+    printf 'include: %s\nscanner:\n  region: tubes\n' "$root/config/published_$set.yaml" > "$output/published_$set.yaml"
+    "$bin/generate_dataset" "$output/published_$set.yaml" --output "$output/published_$set" --tubes 1,5,10,15,20 \
+      --cases "$cases" --jobs "$jobs" > /dev/null || [ $? -eq 3 ] || return 1
+  done
+  "$root/build/bench/piles_table" "$published" "$output/published_scenes" "$output/published_a" "$output/published_b" \
+    > "$output/piles.md" || return 1
+  "$bin/model_tubes" "$output/published_scenes" --output "$output/published_results" --method both --ratios 0.3,1.0 \
+    --jobs "$jobs" || [ $? -eq 3 ] || return 1
+  "$bin/evaluate" "$output/published_results" --format markdown > "$output/published.md" || status=$?
   return $status
 }
 
@@ -118,6 +138,22 @@ EOF
     echo "## Tables and claims"
     echo
     cat "$output/tables.md"
+    if [ -n "$published" ]; then
+      echo
+      echo "## The published scenes"
+      echo
+      echo "$(find "$published" -name '*.txt' | wc -l) scenes that the paper's authors settled with Gazebo, scanned and modelled"
+      echo "here. Set C's tubes branch, which neither method models."
+      echo
+      cat "$output/published.md"
+      echo
+      echo "### Do our piles look like theirs?"
+      echo
+      echo "Ours are from \`config/published_a.yaml\` and \`config/published_b.yaml\`: the published bin and tubes, our physics."
+      echo "A tube touches another where their surfaces are less than 0.25 mm apart."
+      echo
+      cat "$output/piles.md"
+    fi
   } > "$document.tmp"
   mv "$document.tmp" "$document"
 }
@@ -130,6 +166,7 @@ part "model set B, centerline" model b centerline "$cases"
 part "model set A, region_growing" model a region_growing "$slow_cases"
 part "model set B, region_growing" model b region_growing "$slow_cases"
 part "evaluate" evaluate
+if [ -n "$published" ]; then part "published scenes" published_scenes; fi
 write_document
 
 echo
