@@ -23,7 +23,7 @@ struct Sums {
   std::array<int, kIouThresholdCount> true_positives{};
   double true_positive_iou = 0.0;
   double rand_index = 0.0;
-  int runs_with_tubes = 0;
+  int runs_with_several_tubes = 0;
   HooverCounts hoover;
 };
 
@@ -50,8 +50,9 @@ void add_scores(const SegmentationScores& scores, PooledScores& pooled, Sums& su
   for (std::size_t i = 0; i < sums.true_positives.size(); ++i)
     sums.true_positives[i] += scores.true_positives[i];
   sums.true_positive_iou += scores.true_positive_iou;
-  if (tubes > 0) {
-    ++sums.runs_with_tubes;
+  // With one tube any point without a segment makes the index 0, however many the segment has.
+  if (tubes > 1) {
+    ++sums.runs_with_several_tubes;
     sums.rand_index += scores.adjusted_rand_index;
   }
   sums.hoover.detected += scores.hoover.detected;
@@ -70,7 +71,7 @@ void divide(PooledScores& pooled, const Sums& sums) {
   for (double* value : {&pooled.centerline_model_mean, &pooled.centerline_model_p95,
                         &pooled.centerline_truth_mean, &pooled.centerline_truth_p95})
     *value = share(*value, pooled.centerlines);
-  pooled.adjusted_rand_index = share(sums.rand_index, sums.runs_with_tubes);
+  pooled.adjusted_rand_index = share(sums.rand_index, sums.runs_with_several_tubes);
   pooled.detected = share(sums.hoover.detected, pooled.tubes);
   pooled.over_segmented = share(sums.hoover.over_segmented, pooled.tubes);
   pooled.under_segmented = share(sums.hoover.under_segmented, pooled.tubes);

@@ -54,7 +54,8 @@ TEST(Bootstrap, OneValueIsItsOwnInterval) {
 
 TEST(Pool, SumsTubesBeforeItDivides) {
   SegmentationScores first;
-  first.tubes.resize(1);
+  first.tubes.resize(1);  // one tube: no Rand index
+  first.adjusted_rand_index = 0.0;
   first.tubes[0].points = 10;
   first.tubes[0].correct = 10;
   first.tubes[0].predicted_points = 20;
@@ -74,7 +75,7 @@ TEST(Pool, SumsTubesBeforeItDivides) {
   EXPECT_DOUBLE_EQ(pooled.panoptic_quality, 0.6 / 4.0);  // TP + FP / 2 + FN / 2 = (4 + 4) / 2
   EXPECT_DOUBLE_EQ(pooled.average_precision_50, 0.25 * 0.25);
   EXPECT_DOUBLE_EQ(pooled.average_precision, 0.25 * 0.25 / 10.0);
-  EXPECT_DOUBLE_EQ(pooled.adjusted_rand_index, 0.75);
+  EXPECT_DOUBLE_EQ(pooled.adjusted_rand_index, 0.5);
   EXPECT_DOUBLE_EQ(pooled.missed, 0.75);
   EXPECT_DOUBLE_EQ(pooled.tube_count_error, 2.0);
   EXPECT_DOUBLE_EQ(pooled.tube_count_bias, 0.0);

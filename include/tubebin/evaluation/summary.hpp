@@ -35,7 +35,7 @@ struct PooledScores {
   double panoptic_quality = 0.0;      ///< of all tubes together, as the two below
   double average_precision_50 = 0.0;  ///< at IoU 0.5
   double average_precision = 0.0;     ///< mean over IoU 0.5 to 0.95
-  double adjusted_rand_index = 0.0;   ///< mean over the runs that have a tube
+  double adjusted_rand_index = 0.0;   ///< mean over the runs that have several tubes
   double detected = 0.0;
   double over_segmented = 0.0;
   double under_segmented = 0.0;
