@@ -53,18 +53,19 @@ std::optional<FlatEnd> find_flat_end(const Vec3& tip, const Vec3& outward, const
 }
 
 /// Polylines that end in the flat end: straight from one of the last nodes, or with a joint where the flat end's axis
-/// passes nearest to the cylinder before.
+/// passes nearest to the cylinder before. Only nodes near the end may go or move.
 std::vector<std::vector<Vec3>> possible_courses(const std::vector<Vec3>& nodes, const FlatEnd& end, double radius) {
   std::vector<std::vector<Vec3>> courses;
+  const auto is_near = [&](std::size_t k) { return (nodes[k] - nodes.back()).norm() < 3.0 * radius; };
   const std::size_t first = nodes.size() > 4 ? nodes.size() - 4 : 1;
   for (std::size_t keep = first; keep <= nodes.size(); ++keep) {
     std::vector<Vec3> course(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(keep));
     const Vec3 straight = end.center - course.back();
-    if (straight.norm() > radius && straight.normalized().dot(end.outward) > 0.64) {
+    if ((keep == nodes.size() || is_near(keep)) && straight.norm() > radius && straight.normalized().dot(end.outward) > 0.64) {
       courses.push_back(course);
       courses.back().push_back(end.center);
     }
-    if (keep < 2) continue;
+    if (keep < 2 || !is_near(keep - 1)) continue;
     // The nearest points of two lines: Eberly 2000.
     const Vec3 u = (course[keep - 1] - course[keep - 2]).normalized(), v = -end.outward;
     const Vec3 w = course[keep - 1] - end.center;

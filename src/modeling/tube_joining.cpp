@@ -76,21 +76,26 @@ class Joiner {
     chains_ = std::move(chosen);
   }
 
-  /// The length that the tubes with both ends in sight agree on, 0 without at least two that do.
+  /// The length that tubes with both ends in sight agree on, 0 without at least two that do. Nothing shorter than a
+  /// single piece can be it. Of several such lengths the one with the most tube to it counts: chance shortens tubes,
+  /// by missed joins, and lengthens none.
   double common_length() const {
+    const double longest_piece = *std::max_element(lengths_.begin(), lengths_.end());
+    const double tolerance = 4.0 * length_sigma(0.0);
     std::vector<double> seen;
     for (const Chain& chain : chains_)
-      if (ends_[chain.first_end].seen_free > 0.5 && ends_[chain.last_end].seen_free > 0.5) seen.push_back(chain.length);
+      if (ends_[chain.first_end].seen_free > 0.5 && ends_[chain.last_end].seen_free > 0.5 &&
+          chain.length > longest_piece - tolerance)
+        seen.push_back(chain.length);
     std::sort(seen.begin(), seen.end());
-    std::size_t best_first = 0, best_count = 0;
+    double common = 0.0, most = 0.0;
     for (std::size_t first = 0; first < seen.size(); ++first) {
       std::size_t last = first;
-      while (last < seen.size() && seen[last] <= seen[first] + 4.0 * length_sigma(seen[first], 0.0)) ++last;
-      // Of equal groups the longer: chance shortens tubes, by missed joins, and lengthens none.
-      if (last - first >= best_count) best_count = last - first, best_first = first;
+      double sum = 0.0;
+      while (last < seen.size() && seen[last] <= seen[first] + tolerance) sum += seen[last++];
+      if (last - first >= 2 && sum > most) most = sum, common = seen[first + (last - first) / 2];
     }
-    if (best_count < 2) return 0.0;
-    return seen[best_first + best_count / 2];
+    return common;
   }
 
   void set_tube_length(double length) { tube_length_ = length; }
@@ -108,12 +113,12 @@ class Joiner {
 
  private:
   double longest() const {
-    return tube_length_ > 0.0 ? tube_length_ + 5.0 * length_sigma(tube_length_, tube_length_ / 4.0)
+    return tube_length_ > 0.0 ? tube_length_ + 5.0 * length_sigma(tube_length_ / 4.0)
                               : std::numeric_limits<double>::infinity();
   }
 
   /// Ends are placed to a fraction of a radius, and a bridge's true course may be a twentieth longer.
-  double length_sigma(double, double bridged) const { return std::hypot(radius_ / 4.0, bridged / 20.0); }
+  double length_sigma(double bridged) const { return std::hypot(radius_ / 4.0, bridged / 20.0); }
 
   double end_cost(std::uint32_t end) const { return kHiddenEndCost * (1.0 - ends_[end].seen_free); }
 
@@ -123,7 +128,7 @@ class Joiner {
     double room = 0.0;
     for (const std::uint32_t end : {chain.first_end, chain.last_end})
       if (ends_[end].seen_free < 0.5) room += ends_[end].hidden_reach + radius_;
-    const double sigma = length_sigma(tube_length_, chain.bridged);
+    const double sigma = length_sigma(chain.bridged);
     if (missing < 0.0) return 0.5 * missing * missing / (sigma * sigma);
     const double unexplained = std::max(missing - room, 0.0);
     const bool fragment = chain.pieces.size() == 1 && is_fragment(pieces_[chain.pieces.front()]);
