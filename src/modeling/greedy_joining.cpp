@@ -42,8 +42,8 @@ std::vector<Pair> pairs_by_cost(const std::vector<TubePiece>& pieces, const Gree
       const Vec3 line = ends[b].position - ends[a].position;
       const double gap = line.norm();
       if (a / 2 == b / 2 || gap > options.gap_max) continue;
-      // Endpoints that all but touch, as at a bend, have no line between them: there the axes' own angle counts.
-      const bool touch = gap < pieces[a / 2].radius;
+      // Endpoints that all but touch or overlap, as at a bend, have no line between them: the axes' own angle counts.
+      const bool touch = gap < 2.0 * pieces[a / 2].radius;
       const double angle_a = degrees(angle_between(ends[a].outward, touch ? Vec3(-ends[b].outward) : line));
       const double angle_b = touch ? 0.0 : degrees(angle_between(ends[b].outward, -line));
       if (angle_a > options.angle_max_deg || angle_b > options.angle_max_deg) continue;

@@ -1,11 +1,17 @@
 #include "tubebin/modeling/region_growing.hpp"
 
+#include <pcl/console/print.h>
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
 #include <pcl/segmentation/region_growing.h>
 #include <pcl/segmentation/sac_segmentation.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "tubebin/modeling/surface_fitting.hpp"
 
 namespace tubebin {
 namespace {
@@ -23,23 +29,31 @@ struct PclCloud {
   }
 };
 
-/// One cylinder: from the first to the last of its points along its axis.
-TubePiece make_piece(const FilteredCloud& cloud, const Vec3& on_axis, const Vec3& axis, double radius,
-                     const Segment& inliers) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const std::uint32_t i : inliers) {
-    const double along = (cloud.points[i].cast<double>() - on_axis).dot(axis);
-    low = std::min(low, along);
-    high = std::max(high, along);
-  }
-  return {.nodes = {on_axis + low * axis, on_axis + high * axis}, .radius = radius, .points = inliers};
-}
+/// A cylinder without ends, and the points that RANSAC found on it.
+struct Axis {
+  Vec3 point, direction;
+  Segment inliers;
 
-/// The most populated cylinder that RANSAC finds among the points, its inliers removed from them.
-std::optional<TubePiece> take_cylinder(const FilteredCloud& cloud, Segment& remaining, double radius,
-                                       const RegionGrowingOptions& options) {
-  PclCloud pcl_cloud;
-  for (const std::uint32_t i : remaining) pcl_cloud.add(cloud.points[i], cloud.normals[i]);
+  double low = -std::numeric_limits<double>::infinity(), high = -low;  ///< along the axis, metres
+
+  double distance(const Vec3& p) const { return (p - point).cross(direction).norm(); }
+  /// From the surface, and from the stretch that the cylinder covers where the point is beyond its ends.
+  double distance_off(const Vec3& p, double radius) const {
+    const double along = (p - point).dot(direction);
+    return std::abs(distance(p) - radius) + std::max({low - along, along - high, 0.0});
+  }
+};
+
+/// The cylinder on which RANSAC finds most of a sample of the points.
+std::optional<Axis> search_cylinder(const FilteredCloud& cloud, const Segment& remaining, double radius,
+                                    const RegionGrowingOptions& options) {
+  // RANSAC's time goes into counting inliers, and some hundred points tell a good cylinder from a bad one.
+  constexpr std::size_t kSample = 400;
+  PclCloud sample;
+  for (std::size_t k = 0; k < remaining.size(); k += remaining.size() / kSample + 1)
+    sample.add(cloud.points[remaining[k]], cloud.normals[remaining[k]]);
+  // What is left of a segment often holds no cylinder: that is no error to print.
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   pcl::SACSegmentationFromNormals<pcl::PointXYZ, pcl::Normal> sac;
   sac.setModelType(pcl::SACMODEL_CYLINDER);
   sac.setMethodType(pcl::SAC_RANSAC);
@@ -47,24 +61,125 @@ std::optional<TubePiece> take_cylinder(const FilteredCloud& cloud, Segment& rema
   sac.setMaxIterations(options.ransac_iterations);
   sac.setDistanceThreshold(options.inlier_distance * radius);
   sac.setRadiusLimits(0.8 * radius, 1.2 * radius);
-  // PCL's refinement of a cylinder can leave the radius limits, and even turn negative: the sample's stays.
+  // PCL's refinement of a cylinder can leave the radius limits, and even turn negative: ours knows the radius.
   sac.setOptimizeCoefficients(false);
-  sac.setInputCloud(pcl_cloud.points);
-  sac.setInputNormals(pcl_cloud.normals);
+  sac.setInputCloud(sample.points);
+  sac.setInputNormals(sample.normals);
   pcl::PointIndices inliers;
   pcl::ModelCoefficients c;
   sac.segment(inliers, c);
-  if (static_cast<int>(inliers.indices.size()) < options.region_size_min || c.values.size() != 7) return std::nullopt;
-  Segment taken, left;
-  std::size_t next = 0;
-  for (std::size_t k = 0; k < remaining.size(); ++k) {
-    const bool is_inlier = next < inliers.indices.size() && inliers.indices[next] == static_cast<int>(k);
-    (is_inlier ? taken : left).push_back(remaining[k]);
-    if (is_inlier) ++next;
+  if (inliers.indices.size() < 5 || c.values.size() != 7) return std::nullopt;
+  return Axis{.point = Vec3(double(c.values[0]), double(c.values[1]), double(c.values[2])),
+              .direction = Vec3(double(c.values[3]), double(c.values[4]), double(c.values[5])).normalized(),
+              .inliers = {}};
+}
+
+/// Sorts the points into the axis's inliers and the rest.
+Segment take_inliers(const FilteredCloud& cloud, const Segment& points, Axis& axis, double radius, double band) {
+  Segment left, inliers;
+  for (const std::uint32_t i : points)
+    (std::abs(axis.distance(cloud.points[i].cast<double>()) - radius) < band ? inliers : left).push_back(i);
+  axis.inliers = std::move(inliers);
+  return left;
+}
+
+/// Least squares with the known radius on the inliers.
+void refine(const FilteredCloud& cloud, Axis& axis, double radius) {
+  double low = 0.0, high = 0.0;
+  std::vector<SurfacePoint> surface;
+  for (std::size_t k = 0; k < axis.inliers.size(); k += axis.inliers.size() / 500 + 1) {
+    const Vec3 p = cloud.points[axis.inliers[k]].cast<double>();
+    surface.push_back({p, cloud.normals[axis.inliers[k]].cast<double>()});
+    const double along = (p - axis.point).dot(axis.direction);
+    low = surface.size() == 1 ? along : std::min(low, along);
+    high = surface.size() == 1 ? along : std::max(high, along);
   }
-  remaining = std::move(left);
-  const Vec3 axis = Vec3(double(c.values[3]), double(c.values[4]), double(c.values[5])).normalized();
-  return make_piece(cloud, Vec3(double(c.values[0]), double(c.values[1]), double(c.values[2])), axis, radius, taken);
+  if (high - low < radius / 2.0) return;
+  std::vector<Vec3> nodes = {axis.point + low * axis.direction, axis.point + high * axis.direction};
+  fit_surface(nodes, surface, radius);
+  axis.point = nodes[0];
+  axis.direction = (nodes[1] - nodes[0]).normalized();
+}
+
+/// The most populated cylinder that is found among the points, its inliers removed from them.
+std::optional<Axis> take_cylinder(const FilteredCloud& cloud, Segment& remaining, double radius,
+                                  const RegionGrowingOptions& options) {
+  auto axis = search_cylinder(cloud, remaining, radius, options);
+  if (!axis) return std::nullopt;
+  const double band = options.inlier_distance * radius;
+  take_inliers(cloud, remaining, *axis, radius, band);
+  refine(cloud, *axis, radius);
+  remaining = take_inliers(cloud, remaining, *axis, radius, band);
+  if (static_cast<int>(axis->inliers.size()) < options.region_size_min) return std::nullopt;
+  return axis;
+}
+
+/// Gives every point to the cylinder whose surface it is nearest to.
+void settle_inliers(const FilteredCloud& cloud, std::vector<Axis>& axes, double radius) {
+  Segment all;
+  for (Axis& axis : axes) {
+    all.insert(all.end(), axis.inliers.begin(), axis.inliers.end());
+    axis.inliers.clear();
+  }
+  for (const std::uint32_t i : all) {
+    const Vec3 p = cloud.points[i].cast<double>();
+    const auto off = [&](const Axis& axis) { return axis.distance_off(p, radius); };
+    std::min_element(axes.begin(), axes.end(), [&](const Axis& a, const Axis& b) { return off(a) < off(b); })
+        ->inliers.push_back(i);
+  }
+}
+
+void find_extents(const FilteredCloud& cloud, std::vector<Axis>& axes) {
+  for (Axis& axis : axes) {
+    axis.low = std::numeric_limits<double>::infinity();
+    axis.high = -axis.low;
+    for (const std::uint32_t i : axis.inliers) {
+      const double along = (cloud.points[i].cast<double>() - axis.point).dot(axis.direction);
+      axis.low = std::min(axis.low, along);
+      axis.high = std::max(axis.high, along);
+    }
+  }
+}
+
+/// The first cylinders of a segment cut across its bends, and the later ones make do with the strips that were left:
+/// points and axes are settled in turns, as k-means does, and cylinders that others can do without go.
+void settle(const FilteredCloud& cloud, std::vector<Axis>& axes, double radius, const RegionGrowingOptions& options) {
+  constexpr int kRounds = 4;
+  const double band = options.inlier_distance * radius;
+  for (int round = 0; round < kRounds && !axes.empty(); ++round) {
+    find_extents(cloud, axes);
+    settle_inliers(cloud, axes, radius);
+    for (Axis& axis : axes) refine(cloud, axis, radius);
+    find_extents(cloud, axes);
+    const auto fewest = std::min_element(
+        axes.begin(), axes.end(), [](const Axis& a, const Axis& b) { return a.inliers.size() < b.inliers.size(); });
+    const auto is_spared = [&](std::uint32_t i) {
+      const Vec3 p = cloud.points[i].cast<double>();
+      return std::any_of(axes.begin(), axes.end(), [&](const Axis& axis) {
+        return &axis != &*fewest && axis.distance_off(p, radius) < band;
+      });
+    };
+    const auto spared = std::count_if(fewest->inliers.begin(), fewest->inliers.end(), is_spared);
+    if (axes.size() < 2 || 10 * static_cast<std::size_t>(spared) < 7 * fewest->inliers.size()) continue;
+    const Segment freed = std::move(fewest->inliers);
+    axes.erase(fewest);
+    axes.front().inliers.insert(axes.front().inliers.end(), freed.begin(), freed.end());
+    round = -1;  // with one cylinder less, all over again
+  }
+  if (axes.empty()) return;
+  find_extents(cloud, axes);
+  settle_inliers(cloud, axes, radius);
+}
+
+/// From the first to the last of its points along the axis, a hundredth of them cut off at either end as strays.
+TubePiece make_piece(const FilteredCloud& cloud, const Axis& axis, double radius) {
+  std::vector<double> along;
+  for (const std::uint32_t i : axis.inliers) along.push_back((cloud.points[i].cast<double>() - axis.point).dot(axis.direction));
+  std::sort(along.begin(), along.end());
+  const double low = along[along.size() / 100], high = along[along.size() - 1 - along.size() / 100];
+  return {.nodes = {axis.point + low * axis.direction, axis.point + high * axis.direction},
+          .radius = radius,
+          .points = axis.inliers};
 }
 
 }  // namespace
@@ -113,12 +228,19 @@ std::vector<Segment> grow_regions(const FilteredCloud& cloud, const RegionGrowin
 
 std::vector<TubePiece> fit_cylinders(const FilteredCloud& cloud, const Segment& segment, double radius,
                                      const RegionGrowingOptions& options) {
-  std::vector<TubePiece> pieces;
+  std::vector<Axis> axes;
   Segment remaining = segment;
   while (static_cast<int>(remaining.size()) >= options.region_size_min) {
-    auto piece = take_cylinder(cloud, remaining, radius, options);
-    if (!piece) break;
-    if (piece->length() > radius / 4.0) pieces.push_back(std::move(*piece));
+    auto axis = take_cylinder(cloud, remaining, radius, options);
+    if (!axis) break;
+    axes.push_back(std::move(*axis));
+  }
+  settle(cloud, axes, radius, options);
+  std::vector<TubePiece> pieces;
+  for (const Axis& axis : axes) {
+    if (static_cast<int>(axis.inliers.size()) < options.region_size_min) continue;
+    TubePiece piece = make_piece(cloud, axis, radius);
+    if (piece.length() > radius / 2.0) pieces.push_back(std::move(piece));
   }
   return pieces;
 }
