@@ -14,7 +14,7 @@ struct End {
 
 struct Pair {
   double cost = 0.0;
-  double gap = 0.0;
+  double gap = 0.0;  ///< metres; negative where the pieces overlap
   std::size_t a = 0, b = 0;
 };
 
@@ -39,15 +39,18 @@ std::vector<Pair> pairs_by_cost(const std::vector<TubePiece>& pieces, const Gree
   std::vector<Pair> pairs;
   for (std::size_t a = 0; a < ends.size(); ++a)
     for (std::size_t b = a + 1; b < ends.size(); ++b) {
+      if (a / 2 == b / 2) continue;
       const Vec3 line = ends[b].position - ends[a].position;
-      const double gap = line.norm();
-      if (a / 2 == b / 2 || gap > options.gap_max) continue;
-      // Endpoints that all but touch or overlap, as at a bend, have no line between them: the axes' own angle counts.
-      const bool touch = gap < 2.0 * pieces[a / 2].radius;
+      // Cylinders that meet at a bend touch or overlap there: between such ends there is no line, and the axes' own
+      // angle counts, with the distance across them.
+      const bool overlap = line.dot(ends[a].outward) < 0.0 && line.dot(ends[b].outward) > 0.0;
+      const double gap = overlap ? (line - line.dot(ends[a].outward) * ends[a].outward).norm() : line.norm();
+      const bool touch = overlap || gap < 2.0 * pieces[a / 2].radius;
+      if (gap > (overlap ? pieces[a / 2].radius : options.gap_max) || line.norm() > options.gap_max) continue;
       const double angle_a = degrees(angle_between(ends[a].outward, touch ? Vec3(-ends[b].outward) : line));
       const double angle_b = touch ? 0.0 : degrees(angle_between(ends[b].outward, -line));
       if (angle_a > options.angle_max_deg || angle_b > options.angle_max_deg) continue;
-      pairs.push_back({gap + options.angle_cost * (angle_a + angle_b), gap, a, b});
+      pairs.push_back({gap + options.angle_cost * (angle_a + angle_b), overlap ? -line.norm() : gap, a, b});
     }
   std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) { return x.cost < y.cost; });
   return pairs;
