@@ -36,6 +36,18 @@ Foot nearest_foot(const std::vector<Vec3>& nodes, const Vec3& p) {
   return best;
 }
 
+/// As the nodes move little from step to step, a point's foot stays on its cylinder or goes to one beside it.
+Foot follow_foot(const std::vector<Vec3>& nodes, const Vec3& p, std::size_t cylinder) {
+  Foot best = foot_on_cylinder(nodes, cylinder, p);
+  const std::size_t first = cylinder == 0 ? 0 : cylinder - 1;
+  for (std::size_t k = first; k <= cylinder + 1 && k + 1 < nodes.size(); ++k) {
+    if (k == cylinder) continue;
+    const Foot foot = foot_on_cylinder(nodes, k, p);
+    if (foot.distance < best.distance) best = foot;
+  }
+  return best;
+}
+
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -89,11 +101,13 @@ double step(std::vector<Vec3>& nodes, const std::vector<Foot>& feet, double radi
 
 SurfaceFit fit_surface(std::vector<Vec3>& nodes, std::span<const SurfacePoint> points, double radius) {
   constexpr int kMostSteps = 12;
-  const double enough = 1e-4 * radius;  // a thousandth of what a scanner resolves of such a tube
+  const double enough = 1e-3 * radius;  // a hundredth of what a scanner resolves of such a tube
   std::vector<Foot> feet(points.size());
   double sigma = 0.0;
   for (int i = 0;; ++i) {
-    for (std::size_t k = 0; k < points.size(); ++k) feet[k] = nearest_foot(nodes, points[k].position);
+    for (std::size_t k = 0; k < points.size(); ++k)
+      feet[k] = i == 0 ? nearest_foot(nodes, points[k].position)
+                       : follow_foot(nodes, points[k].position, feet[k].cylinder);
     sigma = robust_sigma(feet, radius);
     // Tukey's constant for 95 % efficiency; never so narrow that float rounding decides, never wider than half the
     // radius, beyond which a point is not on this surface.
