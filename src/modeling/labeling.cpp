@@ -67,15 +67,14 @@ class CylinderGrid {
     size_ = ((box_.sizes() / cube_).array().floor().cast<int>() + 1);
     const auto cubes = static_cast<std::size_t>(size_.prod());
     std::vector<std::pair<std::uint32_t, std::uint32_t>> entries;  // cube, cylinder
-    for (std::uint32_t i = 0; i < cylinders.size(); ++i) add(cylinders[i], i, reach, entries);
-    std::sort(entries.begin(), entries.end());
-    entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+    std::vector<std::uint32_t> last_entered(cubes, UINT32_MAX);
+    for (std::uint32_t i = 0; i < cylinders.size(); ++i) add(cylinders[i], i, reach, last_entered, entries);
     starts_.assign(cubes + 1, 0);
-    for (const auto& [cube, cylinder] : entries) {
-      ++starts_[cube + 1];
-      cylinders_.push_back(cylinder);
-    }
+    for (const auto& [cube, cylinder] : entries) ++starts_[cube + 1];
     std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+    std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
+    cylinders_.resize(entries.size());
+    for (const auto& [cube, cylinder] : entries) cylinders_[next[cube]++] = cylinder;
   }
 
   std::span<const std::uint32_t> near(const Point& p) const {
@@ -86,7 +85,7 @@ class CylinderGrid {
   }
 
  private:
-  void add(const SolidCylinder& c, std::uint32_t index, float reach,
+  void add(const SolidCylinder& c, std::uint32_t index, float reach, std::vector<std::uint32_t>& last_entered,
            std::vector<std::pair<std::uint32_t, std::uint32_t>>& entries) const {
     // Balls half a cube apart cover the cylinder if they are larger than it by the sagitta, under a quarter cube.
     const float step = cube_ / 2.0f;
@@ -99,8 +98,12 @@ class CylinderGrid {
       const Eigen::Array3i first = low.floor().cast<int>().max(0), last = high.floor().cast<int>().min(size_ - 1);
       for (int z = first.z(); z <= last.z(); ++z)
         for (int y = first.y(); y <= last.y(); ++y)
-          for (int x = first.x(); x <= last.x(); ++x)
-            entries.emplace_back(static_cast<std::uint32_t>((z * size_.y() + y) * size_.x() + x), index);
+          for (int x = first.x(); x <= last.x(); ++x) {
+            const auto cube = static_cast<std::uint32_t>((z * size_.y() + y) * size_.x() + x);
+            if (last_entered[cube] == index) continue;
+            last_entered[cube] = index;
+            entries.emplace_back(cube, index);
+          }
     }
   }
 
@@ -123,11 +126,35 @@ std::vector<double> distances_to_surface(const TubeSurface& surface, std::span<c
   return distances;
 }
 
-std::vector<NearestSurface> nearest_surfaces(std::span<const Point> points, const std::vector<TubeSurface>& surfaces,
-                                             double reach) {
+namespace {
+
+std::vector<SolidCylinder> all_cylinders(const std::vector<TubeSurface>& surfaces) {
   std::vector<SolidCylinder> cylinders;
   for (std::uint32_t s = 0; s < surfaces.size(); ++s)
     for (const SolidCylinder& c : solid_cylinders(surfaces[s], s)) cylinders.push_back(c);
+  return cylinders;
+}
+
+}  // namespace
+
+std::vector<bool> within_surfaces(std::span<const Point> points, const std::vector<TubeSurface>& surfaces,
+                                  double tolerance) {
+  const std::vector<SolidCylinder> cylinders = all_cylinders(surfaces);
+  std::vector<bool> within(points.size(), false);
+  if (cylinders.empty()) return within;
+  const CylinderGrid grid(cylinders, static_cast<float>(tolerance));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto near = grid.near(points[i]);
+    within[i] = std::any_of(near.begin(), near.end(), [&](std::uint32_t c) {
+      return cylinders[c].signed_distance(points[i]) < static_cast<float>(tolerance);
+    });
+  }
+  return within;
+}
+
+std::vector<NearestSurface> nearest_surfaces(std::span<const Point> points, const std::vector<TubeSurface>& surfaces,
+                                             double reach) {
+  const std::vector<SolidCylinder> cylinders = all_cylinders(surfaces);
   std::vector<NearestSurface> nearest(points.size());
   if (cylinders.empty()) return nearest;
 

@@ -20,17 +20,13 @@ std::vector<std::vector<Vec3>> lengthened(const std::vector<TubePiece>& pieces, 
 }
 
 std::vector<bool> explained(std::span<const Point> points, const std::vector<TubePiece>& pieces, double spacing) {
-  std::vector<bool> result(points.size(), false);
-  if (pieces.empty()) return result;
+  if (pieces.empty()) return std::vector<bool>(points.size(), false);
   const double radius = pieces.front().radius;
   // An end is placed to about a row of points; three cover the row's spacing along a tilted tube.
   const auto nodes = lengthened(pieces, 3.0 * spacing);
   std::vector<TubeSurface> surfaces;
   for (const auto& n : nodes) surfaces.push_back({n, radius});
-  const auto nearest = nearest_surfaces(points, surfaces, radius);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    result[i] = nearest[i].surface != NearestSurface::kNone && nearest[i].distance < radius / 10.0;
-  return result;
+  return within_surfaces(points, surfaces, radius / 10.0);
 }
 
 /// Longer than wide, and at least a third of its visible width is there.
@@ -68,13 +64,17 @@ void drop_explained_pieces(std::vector<TubePiece>& pieces, const std::vector<Poi
   const auto thin = std::stable_partition(pieces.begin(), pieces.end(),
                                           [&](const TubePiece& piece) { return is_well_seen(piece, spacing); });
   const std::vector<TubePiece> well_seen(pieces.begin(), thin);
+  std::vector<Point> thin_points;
+  for (auto piece = thin; piece != pieces.end(); ++piece)
+    for (const std::uint32_t i : piece->points) thin_points.push_back(points[i]);
+  const std::vector<bool> is_explained = explained(thin_points, well_seen, spacing);
   std::vector<TubePiece> kept = well_seen;
+  auto first = is_explained.begin();
   for (auto piece = thin; piece != pieces.end(); ++piece) {
-    std::vector<Point> own;
-    for (const std::uint32_t i : piece->points) own.push_back(points[i]);
-    const std::vector<bool> is_explained = explained(own, well_seen, spacing);
-    const auto count = std::count(is_explained.begin(), is_explained.end(), true);
-    if (2 * static_cast<std::size_t>(count) < own.size()) kept.push_back(std::move(*piece));
+    const auto last = first + static_cast<std::ptrdiff_t>(piece->points.size());
+    const auto count = static_cast<std::size_t>(std::count(first, last, true));
+    if (2 * count < piece->points.size()) kept.push_back(std::move(*piece));
+    first = last;
   }
   pieces = std::move(kept);
 }

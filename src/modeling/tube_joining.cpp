@@ -222,8 +222,10 @@ class Joiner {
 
   /// Less than a radius apart is no matter of the bridges' uncertain course.
   bool bridges_meet(const std::vector<Vec3>& a, const std::vector<Vec3>& b) const {
-    const double longest = (a.front() - a.back()).norm() + (b.front() - b.back()).norm() + radius_;
-    if ((a.front() - b.front()).norm() > longest) return false;
+    Eigen::AlignedBox3d box_a, box_b;
+    for (const Vec3& p : a) box_a.extend(p);
+    for (const Vec3& q : b) box_b.extend(q);
+    if (box_a.squaredExteriorDistance(box_b) > radius_ * radius_) return false;
     for (const Vec3& p : a)
       for (const Vec3& q : b)
         if ((p - q).squaredNorm() < radius_ * radius_) return true;

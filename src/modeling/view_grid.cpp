@@ -28,15 +28,18 @@ struct Extent {
 
 /// Sums that make up the covariance of the neighbours about the point itself.
 struct Moments {
-  float count = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  using Lanes = Eigen::Array<float, 8, 1>;
+  Lanes count = Lanes::Zero(), x = count, y = count, z = count;
+  Lanes xx = count, xy = count, xz = count, yy = count, yz = count, zz = count;
 
+  float points() const { return count.sum(); }
   Eigen::Matrix3f covariance() const {
-    const float n = 1.0f / count;
-    Eigen::Matrix3f c;
-    c << xx - x * x * n, xy - x * y * n, xz - x * z * n,  //
-        xy - x * y * n, yy - y * y * n, yz - y * z * n,   //
-        xz - x * z * n, yz - y * z * n, zz - z * z * n;
-    return c;
+    const Point sum(x.sum(), y.sum(), z.sum());
+    Eigen::Matrix3f products;
+    products << xx.sum(), xy.sum(), xz.sum(),  //
+        xy.sum(), yy.sum(), yz.sum(),          //
+        xz.sum(), yz.sum(), zz.sum();
+    return products - sum * sum.transpose() / points();
   }
 };
 
@@ -53,23 +56,28 @@ struct SortedPoints {
       y.push_back(points[i].y());
       z.push_back(points[i].z());
     }
+    for (auto* coordinates : {&x, &y, &z}) coordinates->resize(order.size() + 8, 0.0f);
   }
 
   void add(Moments& m, const Point& center, float squared_radius, std::uint32_t first, std::uint32_t last) const {
-    for (std::uint32_t k = first; k < last; ++k) {
-      const float dx = x[k] - center.x(), dy = y[k] - center.y(), dz = z[k] - center.z();
-      if (dx * dx + dy * dy + dz * dz > squared_radius) continue;
-      m.count += 1.0f;
-      m.x += dx, m.y += dy, m.z += dz;
-      m.xx += dx * dx, m.xy += dx * dy, m.xz += dx * dz;
-      m.yy += dy * dy, m.yz += dy * dz, m.zz += dz * dz;
+    // Eight at a time without a branch; the arrays' padding, and what follows a run, is masked out.
+    using Eight = Eigen::Array<float, 8, 1>;
+    static const Eight kLanes = Eight::LinSpaced(0.0f, 7.0f);
+    for (std::uint32_t k = first; k < last; k += 8) {
+      const Eight dx = Eight::Map(&x[k]) - center.x(), dy = Eight::Map(&y[k]) - center.y(),
+                  dz = Eight::Map(&z[k]) - center.z();
+      const Eight squared = dx * dx + dy * dy + dz * dz;
+      const Eight w = (squared <= squared_radius && kLanes < static_cast<float>(last - k)).template cast<float>();
+      const Eight wx = w * dx, wy = w * dy, wz = w * dz;
+      m.count += w, m.x += wx, m.y += wy, m.z += wz;
+      m.xx += wx * dx, m.xy += wx * dy, m.xz += wx * dz, m.yy += wy * dy, m.yz += wy * dz, m.zz += wz * dz;
     }
   }
 };
 
 /// The plane's normal; zero where the neighbours are too few, or too much in a line, to span one.
 Point plane_normal(const Moments& moments, const Point& to_viewpoint) {
-  if (moments.count < 5.0f) return Point::Zero();
+  if (moments.points() < 5.0f) return Point::Zero();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(moments.covariance());
   if (solver.eigenvalues()(1) < 0.05f * solver.eigenvalues()(2)) return Point::Zero();
@@ -199,7 +207,7 @@ std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<
 std::vector<int> count_neighbors(const ViewProjection& projection, std::span<const Point> points, double radius) {
   std::vector<int> counts(points.size(), 0);
   for_each_neighborhood(projection, points, radius,
-                        [&](std::size_t i, const auto& sum) { counts[i] = static_cast<int>(sum(1.0f).count); });
+                        [&](std::size_t i, const auto& sum) { counts[i] = static_cast<int>(sum(1.0f).points()); });
   return counts;
 }
 

@@ -29,4 +29,8 @@ struct NearestSurface {
 std::vector<NearestSurface> nearest_surfaces(std::span<const Point> points, const std::vector<TubeSurface>& surfaces,
                                              double reach);
 
+/// Whether each point is inside one of the surfaces, or outside by less than `tolerance` metres.
+std::vector<bool> within_surfaces(std::span<const Point> points, const std::vector<TubeSurface>& surfaces,
+                                  double tolerance);
+
 }  // namespace tubebin
