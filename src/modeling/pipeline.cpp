@@ -52,11 +52,33 @@ double standard_deviation(const std::vector<NearestSurface>& nearest) {
   return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
-std::vector<Label> label_points(const FilteredCloud& cloud, ModelingResult& result) {
+std::vector<NearestSurface> nearest_tubes(const FilteredCloud& cloud, const ModelingResult& result) {
   std::vector<TubeSurface> surfaces;
   for (const TubeModel& tube : result.tubes) surfaces.push_back({tube.nodes, tube.radius});
   // Half a radius: what a bridge's guessed course may be off; the nearest tube wins all the same.
-  const auto nearest = nearest_surfaces(cloud.points, surfaces, result.radius / 2.0);
+  return nearest_surfaces(cloud.points, surfaces, result.radius / 2.0);
+}
+
+/// Points about a tube lie on its surface; points that happen to be somewhere lie anywhere within reach, two fifths of
+/// them in its nearest two fifths. True if any tube went.
+bool drop_tubes_of_chance(ModelingResult& result, const std::vector<NearestSurface>& nearest) {
+  std::vector<double> points(result.tubes.size(), 0.0), on_surface(result.tubes.size(), 0.0);
+  for (const NearestSurface& n : nearest) {
+    if (n.surface == NearestSurface::kNone) continue;
+    points[n.surface] += 1.0;
+    if (std::abs(double(n.distance)) < result.radius / 5.0) on_surface[n.surface] += 1.0;
+  }
+  std::size_t index = 0;
+  return std::erase_if(result.tubes, [&](const TubeModel&) {
+           const bool is_chance = on_surface[index] < 0.6 * points[index];
+           ++index;
+           return is_chance;
+         }) > 0;
+}
+
+std::vector<Label> label_points(const FilteredCloud& cloud, ModelingResult& result) {
+  auto nearest = nearest_tubes(cloud, result);
+  if (drop_tubes_of_chance(result, nearest)) nearest = nearest_tubes(cloud, result);
   result.noise = standard_deviation(nearest);
   std::vector<Label> labels;
   for (const NearestSurface& n : nearest) labels.push_back(n.surface == NearestSurface::kNone ? 0 : n.surface + 1);

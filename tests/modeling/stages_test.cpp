@@ -80,7 +80,7 @@ TEST(Labeling, DistancesMatchSampledSurfaces) {
   Random random(2);
   for (int trial = 0; trial < 300; ++trial) {
     const Vec3 p(random.uniform(-0.03, 0.18), random.uniform(-0.04, 0.1), random.uniform(-0.04, 0.06));
-    const double distance = distance_to_surface(surface, p);
+    const double distance = distances_to_surface(surface, std::span(&p, 1)).front();
     if (distance < 0.0 || (p - nodes[1]).norm() < 0.045) continue;  // inside, or nearest to the unsampled joint
     double nearest = 1.0;
     for (const Vec3& sample : samples) nearest = std::min(nearest, (sample - p).norm());
