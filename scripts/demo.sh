@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 
 scripts/install_dependencies.sh
 cmake --preset release
-cmake --build --preset release
+cmake --build --preset release --target generate_dataset model_tubes evaluate
 
 for set in a b; do
   echo

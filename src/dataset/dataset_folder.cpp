@@ -80,6 +80,7 @@ DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& con
       store_(folder_, config_.output),
       manifest_(folder_) {
   store_.remove_unfinished();
+  if (!manifest_.damaged_lines().empty()) manifest_.rewrite_without({});  // their scenes are made anew
 }
 
 DatasetFolder::~DatasetFolder() try {

@@ -1,6 +1,7 @@
 #include "tubebin/dataset/progress.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -12,7 +13,7 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr Seconds kBarInterval{0.1};
 constexpr Seconds kLineInterval{10.0};
-constexpr std::size_t kBarWidth = 30;
+constexpr std::size_t kBarWidth = 20;
 constexpr const char* kEraseLine = "\r\033[K";
 
 /// "1:02:03" or "2:03"
@@ -20,6 +21,12 @@ std::string clock_text(double seconds) {
   const auto whole = static_cast<long long>(seconds + 0.5);
   if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+/// A line that is longer could not be erased.
+std::size_t terminal_columns() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : 80;
 }
 
 }  // namespace
@@ -50,8 +57,9 @@ std::string Progress::status() const {
 
 void Progress::draw_bar() {
   const std::size_t filled = total_ > 0 ? kBarWidth * done_ / total_ : 0;
-  fmt::print(stderr, "{}[{}{}] {}", kEraseLine, std::string(filled, '#'), std::string(kBarWidth - filled, ' '),
-             status());
+  const std::string bar =
+      fmt::format("[{}{}] {}", std::string(filled, '#'), std::string(kBarWidth - filled, ' '), status());
+  fmt::print(stderr, "{}{}", kEraseLine, bar.substr(0, terminal_columns() - 1));
   std::fflush(stderr);
 }
 
@@ -64,11 +72,6 @@ void Progress::show() {
     draw_bar();
   else
     fmt::print(stderr, "{}\n", status());
-}
-
-void Progress::message(const std::string& text) {
-  fmt::print(stderr, "{}{}\n", is_shown_ && is_terminal_ ? kEraseLine : "", text);
-  if (is_shown_ && is_terminal_) draw_bar();
 }
 
 }  // namespace tubebin

@@ -27,7 +27,6 @@ class DatasetFolder {
   DatasetFolder(const DatasetFolder&) = delete;
   DatasetFolder& operator=(const DatasetFolder&) = delete;
 
-  const std::string& path() const { return folder_; }
   /// All scenes that were ever asked for.
   const DatasetConfig& config() const { return config_; }
   Manifest& manifest() { return manifest_; }

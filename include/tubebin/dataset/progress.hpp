@@ -22,8 +22,6 @@ class Progress {
   void count_reject() { ++rejects_; }
   /// Shows the state, if it is time to; call it often.
   void show();
-  /// A message of its own line, whole above the bar. Shown in every style.
-  void message(const std::string& text);
 
  private:
   std::string status() const;
