@@ -71,29 +71,23 @@ struct Arguments {
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
-  auto* folder =
-      app.add_option("FOLDERS", arguments.folders, "Results folders, or a data set with --predictions");
-  auto* filtered =
-      app.add_option("--filtered", arguments.filtered, "Cloud with the ground truth (PCD or PLY)");
-  auto* labeled =
-      app.add_option("--labeled", arguments.labeled, "The same points, or some of them, as labelled");
+  auto* folder = app.add_option("FOLDERS", arguments.folders, "Results folders, or a data set with --predictions");
+  auto* filtered = app.add_option("--filtered", arguments.filtered, "Cloud with the ground truth (PCD or PLY)");
+  auto* labeled = app.add_option("--labeled", arguments.labeled, "The same points, or some of them, as labelled");
   auto* predictions =
       app.add_option("--predictions", arguments.predictions, "Labelled clouds of any program, one a scene")
           ->type_name("DIR");
-  auto* dataset =
-      app.add_option("--dataset", arguments.dataset, "Data set of a results folder, where it was moved")
-          ->type_name("DIR");
+  auto* dataset = app.add_option("--dataset", arguments.dataset, "Data set of a results folder, where it was moved")
+                      ->type_name("DIR");
   app.add_option("--field", arguments.field, "What tells segments apart")
       ->check(CLI::IsMember(names_of(kFields)))
       ->capture_default_str();
   app.add_option("--format", arguments.format, "Of the tables")
       ->check(CLI::IsMember(names_of(kFormats)))
       ->capture_default_str();
-  auto* html = app.add_option("--html", arguments.html,
-                              "Also write a report: one file with tables, plots and pictures")
+  auto* html = app.add_option("--html", arguments.html, "Also write a report: one file with tables, plots and pictures")
                    ->type_name("FILE");
-  auto* plots =
-      app.add_option("--plots", arguments.plots, "Also write the plots as .svg files")->type_name("DIR");
+  auto* plots = app.add_option("--plots", arguments.plots, "Also write the plots as .svg files")->type_name("DIR");
   auto* paper = app.add_flag("--paper", arguments.paper, "Also compare with the paper's figures and claims");
   app.add_flag("-q,--quiet", arguments.quiet, "No progress");
   app.add_option("-j,--jobs", arguments.jobs, "Threads")->check(CLI::Range(1, 1024))->capture_default_str();
@@ -118,14 +112,12 @@ void print_names(const std::vector<std::string>& names, const char* what) {
   if (names.empty()) return;
   fmt::print(stderr, "evaluate: {} {}\n", names.size(), what);
   for (std::size_t i = 0; i < std::min(names.size(), shown); ++i) fmt::print(stderr, "  {}\n", names[i]);
-  if (names.size() > shown)
-    fmt::print(stderr, "  and {} more (--format json names all)\n", names.size() - shown);
+  if (names.size() > shown) fmt::print(stderr, "  and {} more (--format json names all)\n", names.size() - shown);
 }
 
 void print_gaps(const Evaluation& evaluation) {
-  print_names(evaluation.missing, evaluation.missing_counts_as_zero
-                                      ? "scenes have no prediction and count as zero:"
-                                      : "runs are not there yet and are left out:");
+  print_names(evaluation.missing, evaluation.missing_counts_as_zero ? "scenes have no prediction and count as zero:"
+                                                                    : "runs are not there yet and are left out:");
   print_names(evaluation.failed, "runs failed and count as zero:");
   for (const std::string& note : evaluation.notes) fmt::print(stderr, "evaluate: {}\n", note);
 }
@@ -170,13 +162,11 @@ void write_plots(const std::string& folder, const std::vector<Plot>& plots) {
 int evaluate_folders(const Arguments& arguments) {
   const Evaluation evaluation = read_evaluation(arguments);
   const GenerationSeconds generation = generation_seconds(evaluation);
-  fmt::print("{}", format_results(evaluation, kFormats.at(arguments.format),
-                                  arguments.paper ? &generation : nullptr));
+  fmt::print("{}", format_results(evaluation, kFormats.at(arguments.format), arguments.paper ? &generation : nullptr));
   print_gaps(evaluation);
   if (!arguments.html.empty())
     write_file_atomically(arguments.html, format_html_report({evaluation, generation, points_of_run}));
-  if (!arguments.plots.empty())
-    write_plots(arguments.plots, paper_plots(summarize(evaluation.runs), generation));
+  if (!arguments.plots.empty()) write_plots(arguments.plots, paper_plots(summarize(evaluation.runs), generation));
   const bool is_complete = evaluation.missing.empty() && evaluation.failed.empty();
   return static_cast<int>(is_complete ? ExitCode::done : ExitCode::incomplete);
 }

@@ -1,10 +1,11 @@
 /// From a configuration to labelled point clouds of settled tubes.
+#include "tubebin/dataset/generate_dataset.hpp"
+
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <optional>
 
-#include "tubebin/dataset/generate_dataset.hpp"
 #include "tubebin/dataset/timing_table.hpp"
 #include "tubebin/dataset/verify_dataset.hpp"
 #include "tubebin/scan/scanner.hpp"
@@ -47,7 +48,8 @@ struct Arguments {
 void add_options(CLI::App& app, Arguments& arguments) {
   auto* config = app.add_option("CONFIG", arguments.config, "Configuration file (YAML, see docs/configuration.md)");
   auto* output = app.add_option("-o,--output", arguments.output, "Folder of the data set")->type_name("DIR");
-  app.add_option("--tubes", arguments.tubes, "Numbers of tubes, instead of the configuration's")->type_name("1,5,10-15");
+  app.add_option("--tubes", arguments.tubes, "Numbers of tubes, instead of the configuration's")
+      ->type_name("1,5,10-15");
   app.add_option("--cases", arguments.cases, "Scenes for each number of tubes, instead of the configuration's")
       ->check(CLI::Range(1, 1000000));
   app.add_option("--seed", arguments.seed, "Seed, instead of the configuration's")->check(CLI::NonNegativeNumber);

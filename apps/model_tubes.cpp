@@ -106,9 +106,9 @@ int model_one(const Arguments& arguments) {
   if (error) throw_io_error("{}: cannot be made: {}", arguments.output, error.message());
   write_cloud(arguments.output + "/filtered.pcd", filtered_cloud(input.cloud, result), CloudFormat::pcd_binary);
   write_cloud(arguments.output + "/labeled.pcd", labeled_cloud(input.cloud, result), CloudFormat::pcd_binary);
-  write_file_atomically(
-      arguments.output + "/model.json",
-      format_model_json(result, model_colors(result), [&](Fields& fields) { describe(fields, config); }, true));
+  write_file_atomically(arguments.output + "/model.json",
+                        format_model_json(
+                            result, model_colors(result), [&](Fields& fields) { describe(fields, config); }, true));
 
   const auto unlabeled = std::count(result.labels.begin(), result.labels.end(), Label{0});
   fmt::print("{} tubes of radius {:.2f} mm in {} points, {} of them without a tube; {:.1f} ms\n", result.tubes.size(),

@@ -11,9 +11,7 @@ namespace {
 
 using namespace tubebin;
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 double peak_resident_megabytes() {
   rusage usage{};

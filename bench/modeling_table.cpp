@@ -1,5 +1,6 @@
-/// modeling_table DATASET... : how well and how fast the tubes of data sets' clouds are modelled. Prints Markdown: micro-
-/// recall by set and tubes, with noise and at ratio 0.3; geometry; time beside stock PCL in the same run; worst scenes.
+/// modeling_table DATASET... : how well and how fast the tubes of data sets' clouds are modelled. Prints Markdown:
+/// micro-recall by set and tubes, with noise and at ratio 0.3; geometry; time beside stock PCL in the same run; worst
+/// scenes.
 #include <fmt/format.h>
 #include <pcl/common/io.h>
 #include <pcl/console/print.h>
@@ -38,20 +39,20 @@ struct Variant {
   bool radius_known;
 };
 
-constexpr Variant kVariants[] = {
-    {"centerline", 0.0, 1.0, ModelingMethod::centerline, true},
-    {"centerline, 0.3 mm noise", 0.0003, 1.0, ModelingMethod::centerline, true},
-    {"centerline, ratio 0.3", 0.0, 0.3, ModelingMethod::centerline, true},
-    {"centerline, radius estimated", 0.0, 1.0, ModelingMethod::centerline, false},
-    {"region_growing, ratio 0.3", 0.0, 0.3, ModelingMethod::region_growing, true},
-    {"region_growing", 0.0, 1.0, ModelingMethod::region_growing, true}};
+constexpr Variant kVariants[] = {{"centerline", 0.0, 1.0, ModelingMethod::centerline, true},
+                                 {"centerline, 0.3 mm noise", 0.0003, 1.0, ModelingMethod::centerline, true},
+                                 {"centerline, ratio 0.3", 0.0, 0.3, ModelingMethod::centerline, true},
+                                 {"centerline, radius estimated", 0.0, 1.0, ModelingMethod::centerline, false},
+                                 {"region_growing, ratio 0.3", 0.0, 0.3, ModelingMethod::region_growing, true},
+                                 {"region_growing", 0.0, 1.0, ModelingMethod::region_growing, true}};
 
 CloudToModel with_noise(CloudToModel input, double noise, std::uint64_t seed) {
   if (noise <= 0.0) return input;
   Random random(seed);
   const Vec3 eye = input.cloud.world_from_sensor.translation();
   for (Point& p : input.cloud.points)
-    if (is_finite(p)) p = (p.cast<double>() + noise * random.normal() * (p.cast<double>() - eye).normalized()).cast<float>();
+    if (is_finite(p))
+      p = (p.cast<double>() + noise * random.normal() * (p.cast<double>() - eye).normalized()).cast<float>();
   return input;
 }
 
@@ -127,9 +128,8 @@ using PclNormals = pcl::PointCloud<pcl::Normal>;
 /// Normals, RegionGrowing and RANSAC cylinders as PCL's tutorials put them together, on the points inside the bin.
 double stock_pcl_seconds(const CloudToModel& input) {
   ModelConfig config;
-  const ModelingInput positions{.points = input.cloud.points,
-                                .world_from_sensor = input.cloud.world_from_sensor,
-                                .bin = input.scene->scene.bin};
+  const ModelingInput positions{
+      .points = input.cloud.points, .world_from_sensor = input.cloud.world_from_sensor, .bin = input.scene->scene.bin};
   PclPoints::Ptr points(new PclPoints);
   for (const std::uint32_t i : crop_bin(positions, config.modeling.filtering))
     points->push_back({input.cloud.points[i].x(), input.cloud.points[i].y(), input.cloud.points[i].z()});
@@ -211,17 +211,19 @@ struct Row {
 using RowKey = std::pair<std::pair<std::size_t, std::string>, std::size_t>;
 
 void print_rows(const std::map<RowKey, Row>& rows, const std::map<std::string, std::vector<double>>& stock) {
-  fmt::print("| set | method | clouds | micro-recall mean | least | tubes off | centreline mm: model to truth, mean | 95 % "
-             "| truth to model, mean | 95 % | ms | stock PCL ms | times faster |\n");
+  fmt::print(
+      "| set | method | clouds | micro-recall mean | least | tubes off | centreline mm: model to truth, mean | 95 % "
+      "| truth to model, mean | 95 % | ms | stock PCL ms | times faster |\n");
   fmt::print("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (const auto& [key, row] : rows) {
     const std::string& folder = key.first.second;
     const double stock_ms = 1e3 * mean(stock.at(folder)), ms = 1e3 * mean(row.seconds);
-    fmt::print("| {} | {} | {} | {:.4f} | {:.4f} | {:.2f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.0f} | {:.1f} |\n",
-               folder, kVariants[key.second].name, row.micro_recall.size(), mean(row.micro_recall),
-               quantile(row.micro_recall, 0.0), mean(row.tube_error), 1e3 * mean(row.to_truth),
-               1e3 * quantile(row.to_truth, 0.95), 1e3 * mean(row.to_model), 1e3 * quantile(row.to_model, 0.95), ms,
-               stock_ms, stock_ms / ms);
+    fmt::print(
+        "| {} | {} | {} | {:.4f} | {:.4f} | {:.2f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.0f} | {:.1f} |\n",
+        folder, kVariants[key.second].name, row.micro_recall.size(), mean(row.micro_recall),
+        quantile(row.micro_recall, 0.0), mean(row.tube_error), 1e3 * mean(row.to_truth),
+        1e3 * quantile(row.to_truth, 0.95), 1e3 * mean(row.to_model), 1e3 * quantile(row.to_model, 0.95), ms, stock_ms,
+        stock_ms / ms);
   }
 }
 

@@ -44,11 +44,11 @@ Outcome drop_scenes(int tube_count, int scene_count, const PhysicsOptions& optio
 void print_row(const std::string& name, int tube_count, int scene_count, const PhysicsOptions& options, double base) {
   const Outcome o = drop_scenes(tube_count, scene_count, options);
   std::string failures;
-  for (const auto& [reason, count] : o.failures) failures += fmt::format("{}{} {}", failures.empty() ? "" : ", ", count, reason);
+  for (const auto& [reason, count] : o.failures)
+    failures += fmt::format("{}{} {}", failures.empty() ? "" : ", ", count, reason);
   fmt::print("| {} | {} of {} | {} | {:.0f} | {:.2f} | {:.3f} | {:.3f} |\n", name, o.good, scene_count,
-             failures.empty() ? "-" : failures, o.steps / scene_count,
-             o.good ? o.cpu_seconds / o.good / base : 0.0, o.deepest_penetration * 1e3,
-             o.good ? o.drift / o.good * 1e3 : 0.0);
+             failures.empty() ? "-" : failures, o.steps / scene_count, o.good ? o.cpu_seconds / o.good / base : 0.0,
+             o.deepest_penetration * 1e3, o.good ? o.drift / o.good * 1e3 : 0.0);
 }
 
 }  // namespace

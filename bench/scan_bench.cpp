@@ -18,15 +18,14 @@ Scene scene_of(int tubes, ScanRegion region) {
 
 void report_pixels(benchmark::State& state, const Scan& result) {
   state.counters["rays"] = result.window.width * result.window.height;
-  state.counters["rays/s"] = benchmark::Counter(result.window.width * result.window.height,
-                                                benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["rays/s"] =
+      benchmark::Counter(result.window.width * result.window.height, benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void BM_BuildTree(benchmark::State& state) {
   const Scene scene = scene_of(static_cast<int>(state.range(0)), ScanRegion::bin);
   for (auto _ : state)
-    benchmark::DoNotOptimize(
-        RayCaster(scene_solids(scene), scene.scanner.range_min, scene.scanner.range_max));
+    benchmark::DoNotOptimize(RayCaster(scene_solids(scene), scene.scanner.range_min, scene.scanner.range_max));
 }
 BENCHMARK(BM_BuildTree)->ArgName("tubes")->Arg(1)->Arg(10)->Arg(100)->Unit(benchmark::kMillisecond);
 
@@ -69,13 +68,7 @@ void BM_ScanPixels(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(scan(scene).cloud.points.data());
   report_pixels(state, scan(scene));
 }
-BENCHMARK(BM_ScanPixels)
-    ->ArgName("width")
-    ->Arg(240)
-    ->Arg(480)
-    ->Arg(960)
-    ->Arg(1920)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_ScanPixels)->ArgName("width")->Arg(240)->Arg(480)->Arg(960)->Arg(1920)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tubebin

@@ -13,12 +13,10 @@ namespace {
 
 void check_consistent(const Cloud& cloud) {
   const std::size_t count = cloud.size();
-  if (std::size_t{cloud.width} * cloud.height != count ||
-      (!cloud.colors.empty() && cloud.colors.size() != count) ||
+  if (std::size_t{cloud.width} * cloud.height != count || (!cloud.colors.empty() && cloud.colors.size() != count) ||
       (!cloud.labels.empty() && cloud.labels.size() != count))
-    throw std::invalid_argument(fmt::format("cloud of {} x {} with {} points, {} colours, {} labels",
-                                            cloud.width, cloud.height, count, cloud.colors.size(),
-                                            cloud.labels.size()));
+    throw std::invalid_argument(fmt::format("cloud of {} x {} with {} points, {} colours, {} labels", cloud.width,
+                                            cloud.height, count, cloud.colors.size(), cloud.labels.size()));
 }
 
 }  // namespace

@@ -58,8 +58,7 @@ template <typename Function>
 void for_each_value(const Column& column, std::size_t count, Function&& f) {
   with_type(column.type, [&](auto zero) {
     const char* bytes = column.first;
-    for (std::size_t i = 0; i < count; ++i, bytes += column.stride)
-      f(i, load<decltype(zero)>(bytes, column.swapped));
+    for (std::size_t i = 0; i < count; ++i, bytes += column.stride) f(i, load<decltype(zero)>(bytes, column.swapped));
   });
 }
 
@@ -67,8 +66,8 @@ template <typename Scalar>
 std::uint32_t to_uint32(Scalar value, const char* what, std::size_t point, const std::string& name) {
   const auto number = static_cast<double>(value);
   if (!(number >= 0.0 && number <= kMaxUint32) || number != std::floor(number))
-    throw_io_error("{}: point {}: {} {} is not valid; valid: a whole number from 0 to {}", name, point, what,
-                   number, std::numeric_limits<std::uint32_t>::max());
+    throw_io_error("{}: point {}: {} {} is not valid; valid: a whole number from 0 to {}", name, point, what, number,
+                   std::numeric_limits<std::uint32_t>::max());
   return static_cast<std::uint32_t>(number);
 }
 
@@ -110,8 +109,7 @@ void split_row(std::string_view line, std::vector<std::string_view>& words, std:
                const std::string& name) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     words[i] = take_word(line);
-    if (words[i].empty())
-      throw_io_error("{}:{}: expected {} values, found {}", name, line_number, words.size(), i);
+    if (words[i].empty()) throw_io_error("{}:{}: expected {} values, found {}", name, line_number, words.size(), i);
   }
   if (!take_word(line).empty())
     throw_io_error("{}:{}: expected {} values, found more", name, line_number, words.size());
@@ -124,8 +122,7 @@ std::size_t size_of(ScalarType type) {
 }
 
 double scalar_at(const char* bytes, ScalarType type, bool swapped) {
-  return with_type(type,
-                   [&](auto zero) { return static_cast<double>(load<decltype(zero)>(bytes, swapped)); });
+  return with_type(type, [&](auto zero) { return static_cast<double>(load<decltype(zero)>(bytes, swapped)); });
 }
 
 std::optional<Role> role_of(std::string_view field_name) {
@@ -139,8 +136,8 @@ std::optional<Role> role_of(std::string_view field_name) {
 
 void require_coordinates(const std::array<bool, kRoleCount>& present, const std::string& name) {
   if (present[kX] && present[kY] && present[kZ]) return;
-  throw_io_error("{}: a cloud needs the fields x, y and z; missing here:{}{}{}", name,
-                 present[kX] ? "" : " x", present[kY] ? "" : " y", present[kZ] ? "" : " z");
+  throw_io_error("{}: a cloud needs the fields x, y and z; missing here:{}{}{}", name, present[kX] ? "" : " x",
+                 present[kY] ? "" : " y", present[kZ] ? "" : " z");
 }
 
 void CloudColumns::decode(std::size_t count, double scale, const std::string& name, Cloud& cloud) const {
@@ -190,8 +187,7 @@ std::vector<double> AsciiRows::parse(LineScanner& lines, std::size_t rows, const
   std::vector<std::string_view> words(values_per_row);
   for (std::size_t row = 0; row < rows; ++row) {
     std::optional<std::string_view> line = lines.next_filled();
-    if (!line)
-      throw_io_error("{}: truncated: {} points are announced, but only {} are there", name, rows, row);
+    if (!line) throw_io_error("{}: truncated: {} points are announced, but only {} are there", name, rows, row);
     split_row(*line, words, lines.number(), name);
     for (const Wanted& value : wanted) {
       const std::string_view word = words[value.position];
@@ -208,9 +204,8 @@ CloudColumns AsciiRows::columns(const std::vector<double>& values) const {
   CloudColumns columns;
   if (values.empty()) return columns;
   for (std::size_t k = 0; k < wanted.size(); ++k)
-    columns.set(wanted[k].role,
-                {reinterpret_cast<const char*>(values.data() + k), wanted.size() * sizeof(double),
-                 ScalarType::float64, false, wanted[k].whole});
+    columns.set(wanted[k].role, {reinterpret_cast<const char*>(values.data() + k), wanted.size() * sizeof(double),
+                                 ScalarType::float64, false, wanted[k].whole});
   return columns;
 }
 

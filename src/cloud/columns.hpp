@@ -14,18 +14,7 @@
 
 namespace tubebin {
 
-enum class ScalarType : std::uint8_t {
-  int8,
-  uint8,
-  int16,
-  uint16,
-  int32,
-  uint32,
-  int64,
-  uint64,
-  float32,
-  float64
-};
+enum class ScalarType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 std::size_t size_of(ScalarType type);
 
 struct Column {

@@ -26,11 +26,11 @@ Vec3 oklab(Color color) {
   const Vec3 rgb(linear_from_srgb(color >> 16 & 0xFF), linear_from_srgb(color >> 8 & 0xFF),
                  linear_from_srgb(color & 0xFF));
   Eigen::Matrix3d cones_from_rgb;
-  cones_from_rgb << 0.4122214708, 0.5363325363, 0.0514459929, 0.2119034982, 0.6806995451, 0.1073969566,
-      0.0883024619, 0.2817188376, 0.6299787005;
+  cones_from_rgb << 0.4122214708, 0.5363325363, 0.0514459929, 0.2119034982, 0.6806995451, 0.1073969566, 0.0883024619,
+      0.2817188376, 0.6299787005;
   Eigen::Matrix3d lab_from_roots;
-  lab_from_roots << 0.2104542553, 0.7936177850, -0.0040720468, 1.9779984951, -2.4285922050, 0.4505937099,
-      0.0259040371, 0.7827717662, -0.8086757660;
+  lab_from_roots << 0.2104542553, 0.7936177850, -0.0040720468, 1.9779984951, -2.4285922050, 0.4505937099, 0.0259040371,
+      0.7827717662, -0.8086757660;
   const Vec3 cones = cones_from_rgb * rgb;
   return lab_from_roots * cones.unaryExpr([](double cone) { return std::cbrt(cone); });
 }
@@ -61,8 +61,8 @@ std::vector<Color> label_colors(std::size_t tube_count) {
   static const std::vector<Candidate> all = candidates();
   std::vector<Candidate> free = all;
   if (tube_count >= free.size())
-    throw_config_error("{} tubes are more than there are colours to tell them apart; valid: below {}",
-                       tube_count, free.size());
+    throw_config_error("{} tubes are more than there are colours to tell them apart; valid: below {}", tube_count,
+                       free.size());
   std::vector<Color> colors = {kBinColor};
   colors.reserve(tube_count + 1);
   Vec3 chosen = oklab(kBinColor);

@@ -66,18 +66,12 @@ class HeaderReader {
     if (keyword.empty() || keyword.starts_with('#')) return;
     if (keyword == "VERSION") return;
     if (keyword == "FIELDS" || keyword == "COLUMNS") return read_fields(line);
-    if (keyword == "SIZE")
-      return read_each(line, "SIZE", [&](Field& f, auto word) { f.size = read_size(word); });
-    if (keyword == "TYPE")
-      return read_each(line, "TYPE", [&](Field& f, auto word) { f.type = read_type(word); });
-    if (keyword == "COUNT")
-      return read_each(line, "COUNT", [&](Field& f, auto word) { f.count = read_count(word); });
-    if (keyword == "WIDTH")
-      return static_cast<void>(header_.width = read_whole(line, "WIDTH"), has_width_ = true);
-    if (keyword == "HEIGHT")
-      return static_cast<void>(header_.height = read_whole(line, "HEIGHT"), has_height_ = true);
-    if (keyword == "POINTS")
-      return static_cast<void>(header_.points = read_whole(line, "POINTS"), has_points_ = true);
+    if (keyword == "SIZE") return read_each(line, "SIZE", [&](Field& f, auto word) { f.size = read_size(word); });
+    if (keyword == "TYPE") return read_each(line, "TYPE", [&](Field& f, auto word) { f.type = read_type(word); });
+    if (keyword == "COUNT") return read_each(line, "COUNT", [&](Field& f, auto word) { f.count = read_count(word); });
+    if (keyword == "WIDTH") return static_cast<void>(header_.width = read_whole(line, "WIDTH"), has_width_ = true);
+    if (keyword == "HEIGHT") return static_cast<void>(header_.height = read_whole(line, "HEIGHT"), has_height_ = true);
+    if (keyword == "POINTS") return static_cast<void>(header_.points = read_whole(line, "POINTS"), has_points_ = true);
     if (keyword == "VIEWPOINT") return read_viewpoint(line);
     if (keyword == "DATA") return read_data(line);
     fail("'{}' is no entry of a PCD header", excerpt(keyword));
@@ -104,8 +98,7 @@ class HeaderReader {
   }
 
   char read_type(std::string_view word) const {
-    if (word != "F" && word != "U" && word != "I")
-      fail("TYPE {} is not valid; valid: F, U or I", excerpt(word));
+    if (word != "F" && word != "U" && word != "I") fail("TYPE {} is not valid; valid: F, U or I", excerpt(word));
     return word[0];
   }
 
@@ -118,8 +111,7 @@ class HeaderReader {
 
   std::uint32_t read_whole(std::string_view line, const char* what) const {
     const std::vector<std::string_view> words = words_of(line);
-    const std::optional<std::uint32_t> value =
-        words.size() == 1 ? to_number<std::uint32_t>(words[0]) : std::nullopt;
+    const std::optional<std::uint32_t> value = words.size() == 1 ? to_number<std::uint32_t>(words[0]) : std::nullopt;
     if (!value)
       fail("{}{} is not valid; valid: a whole number from 0 to {}", what, excerpt(line),
            std::numeric_limits<std::uint32_t>::max());
@@ -144,14 +136,10 @@ class HeaderReader {
 
   void read_data(std::string_view line) {
     const std::string_view kind = take_word(line);
-    if (kind == "ascii")
-      header_.data = Data::ascii;
-    else if (kind == "binary")
-      header_.data = Data::binary;
-    else if (kind == "binary_compressed")
-      header_.data = Data::compressed;
-    else
-      fail("DATA {} is not valid; valid: ascii, binary, binary_compressed", excerpt(kind));
+    if (kind == "ascii") header_.data = Data::ascii;
+    else if (kind == "binary") header_.data = Data::binary;
+    else if (kind == "binary_compressed") header_.data = Data::compressed;
+    else fail("DATA {} is not valid; valid: ascii, binary, binary_compressed", excerpt(kind));
     header_.lines = lines_.number();
     header_.data_offset = lines_.offset();
     has_data_ = true;
@@ -163,13 +151,11 @@ class HeaderReader {
       if (field.size == 0 || field.type == 0)
         throw_io_error("{}: the header gives no SIZE and TYPE for its FIELDS", name_);
       if (field.type == 'F' && field.size < 4)
-        throw_io_error("{}: field {}: a float of {} bytes is not known", name_, excerpt(field.name),
-                       field.size);
+        throw_io_error("{}: field {}: a float of {} bytes is not known", name_, excerpt(field.name), field.size);
     }
     if (!has_width_ && !has_points_) throw_io_error("{}: the header has neither WIDTH nor POINTS", name_);
     if (!has_width_) {
-      if (has_height_ && header_.height != 1)
-        throw_io_error("{}: the header has a HEIGHT, but no WIDTH", name_);
+      if (has_height_ && header_.height != 1) throw_io_error("{}: the header has a HEIGHT, but no WIDTH", name_);
       header_.width = static_cast<std::uint32_t>(header_.points);
     }
     const std::uint64_t grid = std::uint64_t{header_.width} * header_.height;
@@ -213,8 +199,7 @@ void for_each_role(const Header& header, const std::string& name, Function&& f) 
   std::size_t position = 0;
   for (const Field& field : header.fields) {
     const std::optional<Role> role = role_of(field.name);
-    if (role && present[*role])
-      throw_io_error("{}: the field {} stands twice in the header", name, field.name);
+    if (role && present[*role]) throw_io_error("{}: the field {} stands twice in the header", name, field.name);
     if (role && field.count != 1)
       throw_io_error("{}: the field {} has {} values a point; expected 1", name, field.name, field.count);
     if (role) {
@@ -228,12 +213,11 @@ void for_each_role(const Header& header, const std::string& name, Function&& f) 
 }
 
 [[noreturn]] void fail_truncated(const Header& header, std::size_t available, const std::string& name) {
-  throw_io_error("{}: truncated: {} points of {} bytes are announced, but only {} bytes are there", name,
-                 header.points, header.point_size(), available);
+  throw_io_error("{}: truncated: {} points of {} bytes are announced, but only {} bytes are there", name, header.points,
+                 header.point_size(), available);
 }
 
-void decode_ascii(const Header& header, std::string_view data, const std::string& name, double scale,
-                  Cloud& cloud) {
+void decode_ascii(const Header& header, std::string_view data, const std::string& name, double scale, Cloud& cloud) {
   AsciiRows rows;
   for (const Field& field : header.fields) rows.values_per_row += field.count;
   for_each_role(header, name, [&](Role role, const Field& field, std::size_t, std::size_t position) {
@@ -242,13 +226,11 @@ void decode_ascii(const Header& header, std::string_view data, const std::string
   LineScanner lines(data, header.lines);
   const std::vector<double> values = rows.parse(lines, header.points, name);
   if (lines.next_filled())
-    throw_io_error("{}:{}: the header says {} points, but there are more", name, lines.number(),
-                   header.points);
+    throw_io_error("{}:{}: the header says {} points, but there are more", name, lines.number(), header.points);
   rows.columns(values).decode(header.points, scale, name, cloud);
 }
 
-void decode_binary(const Header& header, std::string_view data, const std::string& name, double scale,
-                   Cloud& cloud) {
+void decode_binary(const Header& header, std::string_view data, const std::string& name, double scale, Cloud& cloud) {
   const std::size_t stride = header.point_size();
   CloudColumns columns;
   for_each_role(header, name, [&](Role role, const Field& field, std::size_t offset, std::size_t) {
@@ -274,8 +256,8 @@ std::vector<char> decompress(const Header& header, std::string_view data, const 
     throw_io_error("{}: truncated: {} compressed bytes are announced, but only {} are there", name, packed,
                    data.size());
   if (header.points > unpacked / header.point_size() || header.points * header.point_size() != unpacked)
-    throw_io_error("{}: {} points of {} bytes cannot be the {} bytes that the compressed data announces",
-                   name, header.points, header.point_size(), unpacked);
+    throw_io_error("{}: {} points of {} bytes cannot be the {} bytes that the compressed data announces", name,
+                   header.points, header.point_size(), unpacked);
   if (unpacked / kLongestRun > packed)
     throw_io_error("{}: {} compressed bytes cannot hold the {} that are announced", name, packed, unpacked);
   std::vector<char> out(unpacked);
@@ -314,12 +296,9 @@ Cloud parse_pcd(std::string_view bytes, const std::string& name, double scale) {
   cloud.height = header.height;
   cloud.world_from_sensor = header.world_from_sensor;
   cloud.world_from_sensor.translation() *= scale;
-  if (header.data == Data::ascii)
-    decode_ascii(header, data, name, scale, cloud);
-  else if (header.data == Data::binary)
-    decode_binary(header, data, name, scale, cloud);
-  else
-    decode_compressed(header, data, name, scale, cloud);
+  if (header.data == Data::ascii) decode_ascii(header, data, name, scale, cloud);
+  else if (header.data == Data::binary) decode_binary(header, data, name, scale, cloud);
+  else decode_compressed(header, data, name, scale, cloud);
   return cloud;
 }
 

@@ -32,8 +32,8 @@ std::string format_header(const Cloud& cloud, CloudFormat format) {
       "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS {}\nSIZE {}\nTYPE {}\nCOUNT {}\nWIDTH "
       "{}\n"
       "HEIGHT {}\nVIEWPOINT {} {} {} {} {} {} {}\nPOINTS {}\nDATA {}\n",
-      fields, sizes, types, counts, cloud.width, cloud.height, t.x(), t.y(), t.z(), q.w(), q.x(), q.y(),
-      q.z(), cloud.size(), data);
+      fields, sizes, types, counts, cloud.width, cloud.height, t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z(),
+      cloud.size(), data);
 }
 
 std::size_t point_size(const Cloud& cloud) {
@@ -101,8 +101,7 @@ std::string compress(const std::string& input) {
 void append_compressed(std::string& out, const Cloud& cloud) {
   const std::string fields = fields_one_by_one(cloud);
   if (fields.size() + fields.size() / 16 + 64 > std::numeric_limits<std::uint32_t>::max())
-    throw_io_error("a cloud of {} points is too large for a compressed PCD file (4 GB); write it binary",
-                   cloud.size());
+    throw_io_error("a cloud of {} points is too large for a compressed PCD file (4 GB); write it binary", cloud.size());
   const std::string compressed = fields.empty() ? "" : compress(fields);
   for (const std::size_t size : {compressed.size(), fields.size()}) {
     const auto stored = static_cast<std::uint32_t>(size);
@@ -126,12 +125,9 @@ void append_ascii(std::string& out, const Cloud& cloud) {
 
 std::string format_pcd(const Cloud& cloud, CloudFormat format) {
   std::string out = format_header(cloud, format);
-  if (format == CloudFormat::pcd_ascii)
-    append_ascii(out, cloud);
-  else if (format == CloudFormat::pcd_compressed)
-    append_compressed(out, cloud);
-  else
-    append_binary(out, cloud);
+  if (format == CloudFormat::pcd_ascii) append_ascii(out, cloud);
+  else if (format == CloudFormat::pcd_compressed) append_compressed(out, cloud);
+  else append_binary(out, cloud);
   return out;
 }
 

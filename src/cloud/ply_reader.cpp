@@ -73,14 +73,10 @@ class HeaderReader {
       const std::vector<std::string_view> words = words_of(*line);
       if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
       if (words[0] == "end_header") break;
-      if (words[0] == "format")
-        read_format(words), has_format = true;
-      else if (words[0] == "element")
-        read_element(words);
-      else if (words[0] == "property")
-        read_property(words);
-      else
-        fail("'{}' is no entry of a PLY header", excerpt(words[0]));
+      if (words[0] == "format") read_format(words), has_format = true;
+      else if (words[0] == "element") read_element(words);
+      else if (words[0] == "property") read_property(words);
+      else fail("'{}' is no entry of a PLY header", excerpt(words[0]));
     }
     if (!has_format) throw_io_error("{}: the header has no format line", name_);
     header_.lines = lines_.number();
@@ -96,20 +92,14 @@ class HeaderReader {
 
   void read_format(const std::vector<std::string_view>& words) {
     const std::string_view format = words.size() > 1 ? words[1] : "";
-    if (format == "ascii")
-      header_.encoding = Encoding::ascii;
-    else if (format == "binary_little_endian")
-      header_.encoding = Encoding::little_endian;
-    else if (format == "binary_big_endian")
-      header_.encoding = Encoding::big_endian;
-    else
-      fail("format '{}' is not valid; valid: ascii, binary_little_endian, binary_big_endian",
-           excerpt(format));
+    if (format == "ascii") header_.encoding = Encoding::ascii;
+    else if (format == "binary_little_endian") header_.encoding = Encoding::little_endian;
+    else if (format == "binary_big_endian") header_.encoding = Encoding::big_endian;
+    else fail("format '{}' is not valid; valid: ascii, binary_little_endian, binary_big_endian", excerpt(format));
   }
 
   void read_element(const std::vector<std::string_view>& words) {
-    const std::optional<std::uint32_t> count =
-        words.size() == 3 ? to_number<std::uint32_t>(words[2]) : std::nullopt;
+    const std::optional<std::uint32_t> count = words.size() == 3 ? to_number<std::uint32_t>(words[2]) : std::nullopt;
     if (!count) fail("an element line is 'element NAME COUNT', with a count from 0 to 4294967295");
     header_.elements.push_back({words[1], *count, {}});
   }
@@ -117,8 +107,7 @@ class HeaderReader {
   void read_property(const std::vector<std::string_view>& words) {
     if (header_.elements.empty()) fail("a property stands before any element");
     const bool list = words.size() == 5 && words[1] == "list";
-    if (!list && words.size() != 3)
-      fail("a property line is 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
+    if (!list && words.size() != 3) fail("a property line is 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
     Property property{words.back(), read_type(words[words.size() - 2]), std::nullopt};
     if (list) property.list_size = read_type(words[2]);
     header_.elements.back().properties.push_back(property);
@@ -163,10 +152,8 @@ class Body {
     }
     require_coordinates(present, name_);
     cloud.width = static_cast<std::uint32_t>(element.count);
-    if (encoding_ == Encoding::ascii)
-      decode_ascii_vertices(element, scale, cloud);
-    else
-      decode_binary_vertices(element, scale, cloud);
+    if (encoding_ == Encoding::ascii) decode_ascii_vertices(element, scale, cloud);
+    else decode_binary_vertices(element, scale, cloud);
   }
 
   /// The values of an element's first record by name.
@@ -189,8 +176,8 @@ class Body {
   bool swapped() const { return encoding_ == Encoding::big_endian; }
 
   [[noreturn]] void fail_truncated(const Element& element) const {
-    throw_io_error("{}: truncated: {} {} records are announced, but the file ends before that", name_,
-                   element.count, excerpt(element.name));
+    throw_io_error("{}: truncated: {} {} records are announced, but the file ends before that", name_, element.count,
+                   excerpt(element.name));
   }
 
   const char* take(std::size_t size, const Element& element) {
@@ -217,8 +204,7 @@ class Body {
         take(size_of(property.type), element);
         continue;
       }
-      const double count =
-          scalar_at(take(size_of(*property.list_size), element), *property.list_size, swapped());
+      const double count = scalar_at(take(size_of(*property.list_size), element), *property.list_size, swapped());
       if (!(count >= 0.0 && count <= static_cast<double>(data_.size()))) fail_truncated(element);
       take(static_cast<std::size_t>(count) * size_of(property.type), element);
     }
@@ -270,8 +256,7 @@ void apply_camera(const std::map<std::string_view, double>& values, double scale
     cloud.world_from_sensor = make_pose(Quat(rotation).normalized(), position * scale);
   const double width = value("viewportx");
   const double height = value("viewporty");
-  if (width < 1.0 || height < 1.0 || width != std::floor(width) ||
-      width * height != static_cast<double>(cloud.size()))
+  if (width < 1.0 || height < 1.0 || width != std::floor(width) || width * height != static_cast<double>(cloud.size()))
     return;
   cloud.width = static_cast<std::uint32_t>(width);
   cloud.height = static_cast<std::uint32_t>(height);
@@ -285,9 +270,7 @@ const Element* find(const Header& header, std::string_view name) {
 
 }  // namespace
 
-bool looks_like_ply(std::string_view bytes) {
-  return bytes.starts_with("ply\n") || bytes.starts_with("ply\r\n");
-}
+bool looks_like_ply(std::string_view bytes) { return bytes.starts_with("ply\n") || bytes.starts_with("ply\r\n"); }
 
 Cloud parse_ply(std::string_view bytes, const std::string& name, double scale) {
   const Header header = HeaderReader(bytes, name).read();
@@ -299,15 +282,11 @@ Cloud parse_ply(std::string_view bytes, const std::string& name, double scale) {
   Cloud cloud;
   std::map<std::string_view, double> camera_values;
   Body body(bytes.substr(header.data_offset), header, name);
-  const Element* last =
-      camera ? std::max(vertices, camera) : vertices;  // what follows need not even be complete
+  const Element* last = camera ? std::max(vertices, camera) : vertices;  // what follows need not even be complete
   for (const Element* element = header.elements.data(); element <= last; ++element) {
-    if (element == vertices)
-      body.decode_vertices(*element, scale, cloud);
-    else if (element == camera)
-      camera_values = body.first_record(*element);
-    else
-      body.skip(*element);
+    if (element == vertices) body.decode_vertices(*element, scale, cloud);
+    else if (element == camera) camera_values = body.first_record(*element);
+    else body.skip(*element);
   }
   if (camera) apply_camera(camera_values, scale, cloud);
   return cloud;

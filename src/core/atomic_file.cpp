@@ -52,18 +52,15 @@ class TemporaryFile {
   void write(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t written = ::write(file_.number(), bytes.data(), bytes.size());
-      if (written >= 0)
-        bytes.remove_prefix(static_cast<std::size_t>(written));
-      else if (errno != EINTR)
-        fail(final_path_, "cannot be written", errno);
+      if (written >= 0) bytes.remove_prefix(static_cast<std::size_t>(written));
+      else if (errno != EINTR) fail(final_path_, "cannot be written", errno);
     }
     if (::fsync(file_.number()) != 0) fail(final_path_, "cannot be written", errno);
     if (file_.close() != 0) fail(final_path_, "cannot be written", errno);
   }
 
   void rename_to_final() {
-    if (::rename(temporary_path_.c_str(), final_path_.c_str()) != 0)
-      fail(final_path_, "cannot be written", errno);
+    if (::rename(temporary_path_.c_str(), final_path_.c_str()) != 0) fail(final_path_, "cannot be written", errno);
     temporary_path_.clear();
   }
 
@@ -91,8 +88,7 @@ class TemporaryFile {
 /// file is as safe as they make it.
 void sync_folder_of(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  const Descriptor descriptor(
-      ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const Descriptor descriptor(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!descriptor || ::fsync(descriptor.number()) == 0 || errno == EINVAL || errno == ENOTSUP) return;
   fail(path, "its folder cannot be synced", errno);
 }

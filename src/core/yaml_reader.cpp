@@ -80,8 +80,7 @@ class Reader : public Fields {
     if (!found) return;
     if (!found.IsSequence() || found.size() != 3)
       fail(found, path(key), dump(found), "a list of three numbers, as [0.1, 0.2, 0.3]");
-    for (int i = 0; i < 3; ++i)
-      value[i] = to_number(found[i], fmt::format("{}[{}]", path(key), i), limits, unit);
+    for (int i = 0; i < 3; ++i) value[i] = to_number(found[i], fmt::format("{}[{}]", path(key), i), limits, unit);
   }
   void integers(const char* key, std::vector<int>& value, Limits limits, const char*) override {
     const YAML::Node found = find(key);
@@ -140,8 +139,7 @@ class Reader : public Fields {
         throw_config_error("{}: a key must be a plain word", place_of(file_, entry.first.Mark()));
       const std::string key = entry.first.as<std::string>();
       if (!seen.insert(key).second)
-        throw_config_error("{}: {}: the key stands here a second time", place_of(file_, entry.first.Mark()),
-                           path(key));
+        throw_config_error("{}: {}: the key stands here a second time", place_of(file_, entry.first.Mark()), path(key));
     }
   }
 
@@ -150,8 +148,7 @@ class Reader : public Fields {
       return edit_distance(key, a) < edit_distance(key, b);
     });
     // Up to a third of the letters may be wrong; beyond that a suggestion is a guess.
-    if (nearest == known_.end() || edit_distance(key, *nearest) > std::max<std::size_t>(2, key.size() / 3))
-      return "";
+    if (nearest == known_.end() || edit_distance(key, *nearest) > std::max<std::size_t>(2, key.size() / 3)) return "";
     return fmt::format(", did you mean '{}'?", *nearest);
   }
 

@@ -15,9 +15,7 @@ constexpr Limits kTubeCountLimits = {1, 10000};
 const std::set<std::string> kKeysOfExtent = {"tubes", "cases", "attempts_max", "attempt_time_limit"};
 
 void check_set_name(const DatasetConfig& config, const KeyPlaces& places) {
-  const auto is_valid = [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' || c == '-';
-  };
+  const auto is_valid = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' || c == '-'; };
   if (config.set.empty() || config.set.size() > 40 || !std::all_of(config.set.begin(), config.set.end(), is_valid))
     places.fail("set", fmt::format("'{}' is not valid; valid: 1 to 40 letters, '_' or '-' (it begins the names of "
                                    "folders, and digits after it count tubes)",
@@ -47,9 +45,10 @@ int parse_count(const std::string& text, const std::string& whole) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < kTubeCountLimits.min ||
       value > kTubeCountLimits.max)
-    throw_config_error("tubes: '{}' in '{}' is not valid; valid: numbers of tubes from {} to {} and ranges of them, "
-                       "as 1,5,10-15",
-                       text, whole, kTubeCountLimits.min, kTubeCountLimits.max);
+    throw_config_error(
+        "tubes: '{}' in '{}' is not valid; valid: numbers of tubes from {} to {} and ranges of them, "
+        "as 1,5,10-15",
+        text, whole, kTubeCountLimits.min, kTubeCountLimits.max);
   return value;
 }
 
@@ -78,7 +77,8 @@ void describe(Fields& fields, DatasetConfig& config) {
   fields.group("output", "what is written for each scene", [&](Fields& inner) {
     inner.choice("format", config.output.format, {"pcd_binary", "pcd_compressed", "pcd_ascii", "ply_binary"},
                  "file format of the cloud");
-    inner.flag("preview", config.output.preview, "also render preview.png and ground_truth.png, the colours in the scanner's view");
+    inner.flag("preview", config.output.preview,
+               "also render preview.png and ground_truth.png, the colours in the scanner's view");
   });
 }
 

@@ -33,9 +33,10 @@ DatasetConfig unite(const DatasetConfig& there, DatasetConfig here) {
 void refuse_if_made_otherwise(const std::string& folder, const DatasetConfig& there, const DatasetConfig& here) {
   const std::vector<std::string> differing = differences(there, here);
   if (differing.empty()) return;
-  throw_config_error("{}: was made by another configuration, seed or version; choose another folder or make these "
-                     "equal:\n  {}",
-                     folder, fmt::join(differing, "\n  "));
+  throw_config_error(
+      "{}: was made by another configuration, seed or version; choose another folder or make these "
+      "equal:\n  {}",
+      folder, fmt::join(differing, "\n  "));
 }
 
 /// A folder with other things in it was hardly meant.
@@ -66,8 +67,7 @@ DatasetConfig settle_config(const std::string& folder, const DatasetConfig& want
 }  // namespace
 
 DatasetConfig read_dataset_config(const std::string& folder) {
-  if (!fs::exists(config_path(folder)))
-    throw_io_error("{}: is no data set: config.yaml is missing", folder);
+  if (!fs::exists(config_path(folder))) throw_io_error("{}: is no data set: config.yaml is missing", folder);
   DatasetConfig config;
   read_yaml_file(config_path(folder), fields_of(config));
   return config;

@@ -56,8 +56,8 @@ void record_scene(DatasetFolder& folder, const JobOutcome& outcome) {
 }  // namespace
 
 std::size_t GenerationReport::rejects_total() const {
-  return static_cast<std::size_t>(
-      std::accumulate(rejects.begin(), rejects.end(), 0, [](int sum, const auto& entry) { return sum + entry.second; }));
+  return static_cast<std::size_t>(std::accumulate(rejects.begin(), rejects.end(), 0,
+                                                  [](int sum, const auto& entry) { return sum + entry.second; }));
 }
 
 GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<SceneId>& scenes, int jobs,
@@ -70,19 +70,18 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
   GenerationReport report;
   report.complete_before = scenes.size() - missing.size();
   Progress progress(missing.size(), "scenes", progress_style);
-  const PoolEvents events{
-      .on_finished =
-          [&](const JobOutcome& outcome) {
-            if (outcome.succeeded) record_scene(folder, outcome);
-            else report.failed.push_back(describe_failure(scenes[outcome.job], outcome));
-            progress.count_done();
-          },
-      .on_failed_attempt =
-          [&](std::size_t, const FailedAttempt& attempt) {
-            ++report.rejects[attempt.reason];
-            progress.count_reject();
-          },
-      .on_tick = [&] { progress.show(); }};
+  const PoolEvents events{.on_finished =
+                              [&](const JobOutcome& outcome) {
+                                if (outcome.succeeded) record_scene(folder, outcome);
+                                else report.failed.push_back(describe_failure(scenes[outcome.job], outcome));
+                                progress.count_done();
+                              },
+                          .on_failed_attempt =
+                              [&](std::size_t, const FailedAttempt& attempt) {
+                                ++report.rejects[attempt.reason];
+                                progress.count_reject();
+                              },
+                          .on_tick = [&] { progress.show(); }};
   const PoolOptions options{.workers = jobs,
                             .attempts_max = folder.config().attempts_max,
                             .attempt_time_limit = folder.config().attempt_time_limit};

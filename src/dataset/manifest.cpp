@@ -39,9 +39,8 @@ std::string format_manifest_record(const ManifestRecord& record) {
     rejected.push_back({{"attempt", attempt.attempt}, {"reason", attempt.reason}, {"detail", attempt.detail}});
   Json files = Json::object();
   for (const auto& [name, file] : record.files) files[name] = {{"bytes", file.bytes}, {"xxh128", file.xxh128}};
-  const Json json = {{"id", record.id},           {"tubes", record.tubes},
-                     {"seed", record.seed},       {"rejected", rejected},
-                     {"seconds", record.seconds}, {"physics", to_json(record.physics)},
+  const Json json = {{"id", record.id},      {"tubes", record.tubes},     {"seed", record.seed},
+                     {"rejected", rejected}, {"seconds", record.seconds}, {"physics", to_json(record.physics)},
                      {"files", files}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

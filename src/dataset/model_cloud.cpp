@@ -29,7 +29,8 @@ Pose choose_sensor(const CloudToModel& input, const ModelConfig& config) {
 std::vector<std::size_t> input_order(const ModelingResult& result) {
   std::vector<std::size_t> order(result.source.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return result.source[a] < result.source[b]; });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return result.source[a] < result.source[b]; });
   return order;
 }
 

@@ -87,7 +87,8 @@ std::vector<std::pair<std::string, std::string>> find_clouds(const BatchOptions&
 /// Both methods get the same seed, and so the same points.
 std::uint64_t run_seed(std::uint64_t seed, const Run& run) {
   std::uint64_t mixed = derive_seed({seed, std::bit_cast<std::uint64_t>(run.ratio)});
-  for (const char c : run.scene) mixed = derive_seed({mixed, static_cast<std::uint64_t>(static_cast<unsigned char>(c))});
+  for (const char c : run.scene)
+    mixed = derive_seed({mixed, static_cast<std::uint64_t>(static_cast<unsigned char>(c))});
   return mixed;
 }
 
@@ -229,7 +230,8 @@ std::string merge_index(const std::string& path, const std::string& wanted_text)
   return wanted.dump(1) + "\n";
 }
 
-std::vector<Run> list_runs(const BatchOptions& options, const std::vector<std::pair<std::string, std::string>>& clouds) {
+std::vector<Run> list_runs(const BatchOptions& options,
+                           const std::vector<std::pair<std::string, std::string>>& clouds) {
   std::vector<Run> runs;
   for (const auto& [scene, path] : clouds)
     for (const ModelingMethod method : options.methods)
@@ -268,8 +270,7 @@ std::vector<double> parse_ratios(const std::string& text) {
   const double first = parse_ratio(parts[0], text), last = parse_ratio(parts[1], text),
                step = parse_ratio(parts[2], text);
   // Decimal steps, not their binary sums: 0.3, not 0.30000000000000004.
-  for (int k = 0; first + k * step <= last + 1e-9; ++k)
-    ratios.push_back(std::round((first + k * step) * 1e9) / 1e9);
+  for (int k = 0; first + k * step <= last + 1e-9; ++k) ratios.push_back(std::round((first + k * step) * 1e9) / 1e9);
   if (ratios.empty()) throw_config_error("--ratios {}: the first is above the last", text);
   return ratios;
 }
@@ -290,22 +291,21 @@ BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config
   BatchReport report{.runs = runs.size(), .complete_before = runs.size() - missing.size(), .failed = {}};
   Progress progress(missing.size(), "clouds", progress_style);
   std::string failures;
-  const PoolEvents events{.on_finished =
-                              [&](const JobOutcome& outcome) {
-                                progress.count_done();
-                                if (outcome.succeeded) return;
-                                const Run& run = runs[outcome.job];
-                                const FailedAttempt& last = outcome.failed.back();
-                                const std::string why = last.detail.empty() ? last.reason : last.detail;
-                                report.failed.push_back(fmt::format("{}: {}", run.folder(), why));
-                                failures += Json{{"scene", run.scene},
-                                                 {"method", name_of(run.method)},
-                                                 {"ratio", run.ratio},
-                                                 {"error", why}}
-                                                .dump() +
-                                            "\n";
-                              },
-                          .on_tick = [&] { progress.show(); }};
+  const PoolEvents events{
+      .on_finished =
+          [&](const JobOutcome& outcome) {
+            progress.count_done();
+            if (outcome.succeeded) return;
+            const Run& run = runs[outcome.job];
+            const FailedAttempt& last = outcome.failed.back();
+            const std::string why = last.detail.empty() ? last.reason : last.detail;
+            report.failed.push_back(fmt::format("{}: {}", run.folder(), why));
+            failures +=
+                Json{{"scene", run.scene}, {"method", name_of(run.method)}, {"ratio", run.ratio}, {"error", why}}
+                    .dump() +
+                "\n";
+          },
+      .on_tick = [&] { progress.show(); }};
   const PoolOptions pool_options{.workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit};
   const PoolReport pool = run_jobs(
       missing, pool_options, [&](std::size_t job, int) { return do_run(runs[job], options, config); }, events);

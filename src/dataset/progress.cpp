@@ -50,7 +50,7 @@ std::string Progress::status() const {
   const double rate = elapsed > 0.0 ? static_cast<double>(done_) / elapsed : 0.0;
   const std::string time = done_ == total_ ? fmt::format("took {}", clock_text(elapsed))
                            : done_ == 0    ? std::string("ETA --:--")
-                                           : fmt::format("ETA {}", clock_text(static_cast<double>(total_ - done_) / rate));
+                                        : fmt::format("ETA {}", clock_text(static_cast<double>(total_ - done_) / rate));
   const std::string rejects = rejects_ > 0 ? fmt::format(" {} rejects,", rejects_) : "";
   return fmt::format("{}/{} {}, {:.1f} {}/s,{} {}", done_, total_, noun_, rate, noun_, rejects, time);
 }
@@ -68,10 +68,8 @@ void Progress::show() {
   const auto now = std::chrono::steady_clock::now();
   if (now - last_shown_ < (is_terminal_ ? kBarInterval : kLineInterval)) return;
   last_shown_ = now;
-  if (is_terminal_)
-    draw_bar();
-  else
-    fmt::print(stderr, "{}\n", status());
+  if (is_terminal_) draw_bar();
+  else fmt::print(stderr, "{}\n", status());
 }
 
 }  // namespace tubebin

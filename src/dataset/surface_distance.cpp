@@ -33,14 +33,12 @@ double BodySurface::distance(const Vec3& point) const {
     const Vec3 from_center = point - cylinder.center;
     const double along = from_center.dot(cylinder.axis);
     const double radial = (from_center - along * cylinder.axis).norm();
-    nearest = std::min(nearest, distance_from_bounds(
-                                    Eigen::Vector2d(radial - radius_, std::abs(along) - cylinder.half_length)));
-  }
-  for (const Vec3& center : sphere_centers_)
-    nearest = std::min(nearest, std::abs((point - center).norm() - radius_));
-  for (const Box& box : boxes_)
     nearest = std::min(nearest,
-                       distance_from_bounds(Vec3((point - box.center()).cwiseAbs() - box.sizes() / 2.0)));
+                       distance_from_bounds(Eigen::Vector2d(radial - radius_, std::abs(along) - cylinder.half_length)));
+  }
+  for (const Vec3& center : sphere_centers_) nearest = std::min(nearest, std::abs((point - center).norm() - radius_));
+  for (const Box& box : boxes_)
+    nearest = std::min(nearest, distance_from_bounds(Vec3((point - box.center()).cwiseAbs() - box.sizes() / 2.0)));
   return nearest;
 }
 

@@ -16,8 +16,7 @@ struct Mean {
 /// Table 1 of the paper, for its sets A and B.
 std::optional<double> paper_seconds(const std::string& set, int tubes) {
   const auto of_set = paper_figures().generation_seconds.find(set);
-  if (of_set == paper_figures().generation_seconds.end() || !of_set->second.contains(tubes))
-    return std::nullopt;
+  if (of_set == paper_figures().generation_seconds.end() || !of_set->second.contains(tubes)) return std::nullopt;
   return of_set->second.at(tubes);
 }
 
@@ -49,8 +48,7 @@ std::string format_timing_table(const Manifest& manifest, const std::vector<Scen
     text += fmt::format("{:>6} {:>7} {:>9.3f}", tubes, mean.count, here);
     if (const std::optional<double> paper = paper_seconds(set, tubes))
       text += fmt::format(" {:>9.2f} {:>8.0f}x\n", *paper, *paper / here);
-    else
-      text += fmt::format(" {:>9} {:>9}\n", "-", "-");
+    else text += fmt::format(" {:>9} {:>9}\n", "-", "-");
   }
   return text;
 }

@@ -31,8 +31,7 @@ void add_outcome(VerificationReport& report, const SceneId& id, const JobOutcome
   ++report.checked;
   if (!outcome.succeeded)
     add_damaged(report, id, {fmt::format("could not be checked: {}", outcome.failed.back().detail)});
-  else if (!outcome.text.empty())
-    add_damaged(report, id, lines_of(outcome.text));
+  else if (!outcome.text.empty()) add_damaged(report, id, lines_of(outcome.text));
 }
 
 }  // namespace
@@ -47,12 +46,10 @@ VerificationReport verify_dataset(const std::string& folder, int jobs, Progress:
   const std::vector<SceneId> scenes = list_scenes(config);
   std::vector<std::size_t> recorded;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    if (manifest.find(scenes[i].name()) != nullptr)
-      recorded.push_back(i);
+    if (manifest.find(scenes[i].name()) != nullptr) recorded.push_back(i);
     else if (std::filesystem::exists(folder + "/" + scenes[i].name()))
       add_damaged(report, scenes[i], {"is not in the manifest"});
-    else
-      ++report.missing;
+    else ++report.missing;
   }
 
   Progress progress(recorded.size(), "scenes", progress_style);
@@ -65,8 +62,7 @@ VerificationReport verify_dataset(const std::string& folder, int jobs, Progress:
   const auto work = [&](std::size_t job, int) {
     return check_scene(folder, config, scenes[job], *manifest.find(scenes[job].name()));
   };
-  const PoolOptions options{
-      .workers = jobs, .attempts_max = 1, .attempt_time_limit = config.attempt_time_limit};
+  const PoolOptions options{.workers = jobs, .attempts_max = 1, .attempt_time_limit = config.attempt_time_limit};
   report.signal = run_jobs(recorded, options, work, events).signal;
   std::sort(report.problems.begin(), report.problems.end());
   std::sort(report.damaged.begin(), report.damaged.end());

@@ -77,7 +77,7 @@ void check_cloud_layout(const Cloud& cloud, const SceneRecord& scene, Problems& 
   const bool is_organized =
       scene.scene.scanner.region != ScanRegion::tubes && scene.window.width * scene.window.height > 0;
   if (is_organized && (cloud.width != static_cast<std::uint32_t>(scene.window.width) ||
-                    cloud.height != static_cast<std::uint32_t>(scene.window.height)))
+                       cloud.height != static_cast<std::uint32_t>(scene.window.height)))
     problems.push_back(fmt::format("the cloud has {} x {} points, the window of scene.json {} x {}", cloud.width,
                                    cloud.height, scene.window.width, scene.window.height));
   if (cloud.colors.size() != cloud.size() || cloud.labels.size() != cloud.size())
@@ -119,7 +119,8 @@ void check_contacts(const SceneRecord& scene, const DatasetConfig& config, Probl
              surfaces[label].distance(contact.position) > std::abs(contact.depth) + kContactTolerance;
     };
     if (off(contact.label_a) || off(contact.label_b))
-      problems.push_back(fmt::format("the contact of {} and {} is not where both are", contact.label_a, contact.label_b));
+      problems.push_back(
+          fmt::format("the contact of {} and {} is not where both are", contact.label_a, contact.label_b));
     if (contact.depth > config.physics.penetration_max)
       problems.push_back(fmt::format("{} and {} interpenetrate by {:.3f} mm, more than the {:.3f} mm allowed",
                                      contact.label_a, contact.label_b, contact.depth * 1e3,
@@ -150,7 +151,8 @@ void check_content(const std::string& path, const DatasetConfig& config, const S
   check_contacts(scene, config, problems);
   check_held(scene, problems);
   if (record.physics.largest_drift > config.physics.drift_max)
-    problems.push_back(fmt::format("a tube moved by {:.3f} mm in the check at the end", record.physics.largest_drift * 1e3));
+    problems.push_back(
+        fmt::format("a tube moved by {:.3f} mm in the check at the end", record.physics.largest_drift * 1e3));
   const Cloud cloud = read_cloud(path + "/cloud" + extension(config.output.format));
   check_cloud_layout(cloud, scene, problems);
   if (problems.empty()) check_points(cloud, scene, problems);

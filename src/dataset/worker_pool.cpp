@@ -77,8 +77,8 @@ class RunningClock {
 
 struct Worker {
   std::unique_ptr<WorkerProcess> process;
-  std::optional<JobOutcome> job;        ///< in work
-  int kills = 0;                        ///< of the current attempt, from outside
+  std::optional<JobOutcome> job;  ///< in work
+  int kills = 0;                  ///< of the current attempt, from outside
   double attempt_start = 0.0;
   std::optional<JobOutcome> finishing;  ///< computed, and not done until its `finish` has returned
 
@@ -157,12 +157,18 @@ class Pool {
   void handle_answer(Worker& worker) {
     const WorkerAnswer answer = worker.process->answer();
     switch (answer.kind) {
-      case WorkerAnswer::Kind::failed: return fail_attempt(worker, answer.text, answer.detail);
-      case WorkerAnswer::Kind::computed: return finish_beside_next(worker);
-      case WorkerAnswer::Kind::succeeded: return succeed(worker, answer.text);
-      case WorkerAnswer::Kind::io_error: throw IoError(answer.text);
-      case WorkerAnswer::Kind::config_error: throw ConfigError(answer.text);
-      case WorkerAnswer::Kind::died: return handle_death(worker);
+      case WorkerAnswer::Kind::failed:
+        return fail_attempt(worker, answer.text, answer.detail);
+      case WorkerAnswer::Kind::computed:
+        return finish_beside_next(worker);
+      case WorkerAnswer::Kind::succeeded:
+        return succeed(worker, answer.text);
+      case WorkerAnswer::Kind::io_error:
+        throw IoError(answer.text);
+      case WorkerAnswer::Kind::config_error:
+        throw ConfigError(answer.text);
+      case WorkerAnswer::Kind::died:
+        return handle_death(worker);
     }
   }
 
@@ -186,8 +192,9 @@ class Pool {
     const bool from_outside = signal == SIGKILL || signal == SIGTERM;
     if (!from_outside)
       return lose_process(worker, "crash",
-                          signal != 0 ? fmt::format("its process was ended by signal {} ({})", signal, strsignal(signal))
-                                      : "its process ended by itself");
+                          signal != 0
+                              ? fmt::format("its process was ended by signal {} ({})", signal, strsignal(signal))
+                              : "its process ended by itself");
     if (++worker.kills >= kKillsMax)
       return lose_process(worker, "killed", fmt::format("its process was killed {} times", kKillsMax));
     worker.process.reset();

@@ -47,8 +47,8 @@ class HungarianMethod {
   }
 
   /// Updates the distances over the row matched with `column`; returns the nearest column not visited yet.
-  std::size_t relax_from(std::size_t column, std::vector<std::int64_t>& distance,
-                         std::vector<std::size_t>& previous, const std::vector<char>& visited) const {
+  std::size_t relax_from(std::size_t column, std::vector<std::int64_t>& distance, std::vector<std::size_t>& previous,
+                         const std::vector<char>& visited) const {
     std::size_t nearest = 0;
     for (std::size_t next = 1; next < distance.size(); ++next) {
       if (visited[next]) continue;
@@ -62,8 +62,7 @@ class HungarianMethod {
     return nearest;
   }
 
-  void shift_potentials(std::int64_t delta, std::vector<std::int64_t>& distance,
-                        const std::vector<char>& visited) {
+  void shift_potentials(std::int64_t delta, std::vector<std::int64_t>& distance, const std::vector<char>& visited) {
     for (std::size_t column = 0; column < distance.size(); ++column) {
       if (visited[column]) {
         row_potential_[count(row_of_column_[column])] += delta;
@@ -99,8 +98,7 @@ std::vector<int> max_weight_assignment(const Counts& weights) {
     int row_index = row_of_column[column] - 1;
     int column_index = static_cast<int>(column) - 1;
     if (transposed) std::swap(row_index, column_index);
-    if (weights(row_index, column_index) > 0)
-      column_of_row[static_cast<std::size_t>(row_index)] = column_index;
+    if (weights(row_index, column_index) > 0) column_of_row[static_cast<std::size_t>(row_index)] = column_index;
   }
   return column_of_row;
 }

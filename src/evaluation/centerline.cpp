@@ -12,16 +12,14 @@ std::vector<Vec3> sample_piece(const CenterlinePiece& piece) {
   const int steps = std::max(1, static_cast<int>(std::ceil(length / kCenterlineStep)));
   std::vector<Vec3> samples;
   // Midpoints of equal parts weigh every stretch by its length, and joints are not counted twice.
-  for (int i = 0; i < steps; ++i)
-    samples.push_back(piece.start + (piece.end - piece.start) * ((i + 0.5) / steps));
+  for (int i = 0; i < steps; ++i) samples.push_back(piece.start + (piece.end - piece.start) * ((i + 0.5) / steps));
   return samples;
 }
 
 double squared_distance(const Vec3& point, const CenterlinePiece& piece) {
   const Vec3 along = piece.end - piece.start;
   const double squared_length = along.squaredNorm();
-  const double t =
-      squared_length > 0.0 ? std::clamp((point - piece.start).dot(along) / squared_length, 0.0, 1.0) : 0.0;
+  const double t = squared_length > 0.0 ? std::clamp((point - piece.start).dot(along) / squared_length, 0.0, 1.0) : 0.0;
   return (point - piece.start - t * along).squaredNorm();
 }
 
@@ -78,8 +76,7 @@ MeanAndP95 summarize(std::vector<double>& distances) {
 
 double CenterlineSamples::visible_fraction() const {
   if (visible.empty()) return 0.0;
-  return static_cast<double>(std::count(visible.begin(), visible.end(), char{1})) /
-         static_cast<double>(visible.size());
+  return static_cast<double>(std::count(visible.begin(), visible.end(), char{1})) / static_cast<double>(visible.size());
 }
 
 Centerline centerline(const PlacedTube& tube) {
@@ -87,8 +84,7 @@ Centerline centerline(const PlacedTube& tube) {
   for (const Cylinder& cylinder : tube.tube.cylinders)
     line.push_back({tube.node_in_world(cylinder.node_a), tube.node_in_world(cylinder.node_b)});
   // A node alone is a sphere: a piece of no length.
-  if (line.empty() && !tube.tube.nodes.empty())
-    line.push_back({tube.node_in_world(0), tube.node_in_world(0)});
+  if (line.empty() && !tube.tube.nodes.empty()) line.push_back({tube.node_in_world(0), tube.node_in_world(0)});
   return line;
 }
 

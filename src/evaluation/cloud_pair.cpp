@@ -43,10 +43,8 @@ SegmentField automatic_field(const NamedCloud& named) {
 SegmentField resolve_field(const NamedCloud& named, SegmentField field) {
   if (named.cloud.size() == 0) return SegmentField::label;  // a cloud without points has no need of ids
   if (field == SegmentField::automatic) return automatic_field(named);
-  if (field == SegmentField::label && named.cloud.labels.empty())
-    throw_io_error("{}: has no label field", named.name);
-  if (field == SegmentField::color && named.cloud.colors.empty())
-    throw_io_error("{}: has no colours", named.name);
+  if (field == SegmentField::label && named.cloud.labels.empty()) throw_io_error("{}: has no label field", named.name);
+  if (field == SegmentField::color && named.cloud.colors.empty()) throw_io_error("{}: has no colours", named.name);
   return field;
 }
 
@@ -60,8 +58,8 @@ void require_points(const NamedCloud& named) {
 }
 
 /// Predicted ids in the filtered cloud's order; `found` tells which points the labelled cloud has.
-std::vector<SegmentId> predicted_ids(const NamedCloud& filtered, const NamedCloud& labeled,
-                                     SegmentField field, std::vector<char>& found) {
+std::vector<SegmentId> predicted_ids(const NamedCloud& filtered, const NamedCloud& labeled, SegmentField field,
+                                     std::vector<char>& found) {
   const std::vector<std::uint32_t> point_of =
       corresponding_points(labeled.cloud.points, filtered.cloud.points, kPositionTolerance);
   const std::vector<SegmentId>& ids = ids_of(labeled.cloud, field);

@@ -27,8 +27,7 @@ Indexed index_ids(std::span<const SegmentId> ids) {
   std::uint32_t last_index = 0;
   for (const SegmentId id : ids) {
     if (indexed.ids.empty() || id != last_id) {
-      const auto [entry, is_new] =
-          index_of_id.try_emplace(id, static_cast<std::uint32_t>(indexed.ids.size()));
+      const auto [entry, is_new] = index_of_id.try_emplace(id, static_cast<std::uint32_t>(indexed.ids.size()));
       if (is_new) indexed.ids.push_back(id);
       last_id = id;
       last_index = entry->second;
@@ -38,8 +37,7 @@ Indexed index_ids(std::span<const SegmentId> ids) {
   std::vector<SegmentId> sorted = indexed.ids;
   std::sort(sorted.begin(), sorted.end());
   std::vector<std::uint32_t> rank(sorted.size());
-  for (std::size_t i = 0; i < sorted.size(); ++i)
-    rank[index_of_id.at(sorted[i])] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < sorted.size(); ++i) rank[index_of_id.at(sorted[i])] = static_cast<std::uint32_t>(i);
   for (std::uint32_t& index : indexed.index_of_point) index = rank[index];
   indexed.ids = std::move(sorted);
   return indexed;
@@ -47,9 +45,7 @@ Indexed index_ids(std::span<const SegmentId> ids) {
 
 }  // namespace
 
-std::int64_t Contingency::total() const {
-  return std::accumulate(unlabeled.begin(), unlabeled.end(), counts.sum());
-}
+std::int64_t Contingency::total() const { return std::accumulate(unlabeled.begin(), unlabeled.end(), counts.sum()); }
 
 Contingency count_pairs(std::span<const SegmentId> truth, std::span<const SegmentId> predicted,
                         std::optional<SegmentId> bin_id) {

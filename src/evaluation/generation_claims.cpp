@@ -31,8 +31,8 @@ Claim rises_with_tubes(const GenerationSeconds& seconds) {
     }
     const double correlation = rank_correlation(x, y);
     holds = holds && correlation >= kMonotone;
-    claim.here += fmt::format("{}{}: {:.3f} to {:.3f} s (rank correlation {:.2f})",
-                              claim.here.empty() ? "" : "; ", set, y.front(), y.back(), correlation);
+    claim.here += fmt::format("{}{}: {:.3f} to {:.3f} s (rank correlation {:.2f})", claim.here.empty() ? "" : "; ", set,
+                              y.front(), y.back(), correlation);
   }
   if (!claim.here.empty()) claim.verdict = holds ? Verdict::confirmed : Verdict::not_confirmed;
   return claim;
@@ -63,25 +63,23 @@ Claim b_takes_less(const GenerationSeconds& seconds) {
         return b / a - 1.0;
       },
       kSeed);
-  claim.here = fmt::format("{:+.1f} % [{:+.1f}, {:+.1f}]", 100.0 * change.mean, 100.0 * change.low,
-                           100.0 * change.high);
+  claim.here =
+      fmt::format("{:+.1f} % [{:+.1f}, {:+.1f}]", 100.0 * change.mean, 100.0 * change.low, 100.0 * change.high);
   claim.verdict = change.high < 0.0 ? Verdict::confirmed : Verdict::not_confirmed;
   return claim;
 }
 
 Claim ten_tubes_within_15_seconds(const GenerationSeconds& seconds) {
-  Claim claim{"A bin with ten tubes takes less than 15 s, so that an hour gives 240 clouds",
-              "A: 14.20 s, B: 13.73 s",
-              "",
-              {}};
+  Claim claim{
+      "A bin with ten tubes takes less than 15 s, so that an hour gives 240 clouds", "A: 14.20 s, B: 13.73 s", "", {}};
   bool holds = true;
   for (const auto& [set, by_tubes] : seconds) {
     const auto* values = find(seconds, set, 10);
     if (values == nullptr) continue;
     const double average = mean(*values);
     holds = holds && average < 15.0;
-    claim.here += fmt::format("{}{}: {:.3f} s, {:.0f} clouds an hour", claim.here.empty() ? "" : "; ", set,
-                              average, 3600.0 / average);
+    claim.here += fmt::format("{}{}: {:.3f} s, {:.0f} clouds an hour", claim.here.empty() ? "" : "; ", set, average,
+                              3600.0 / average);
   }
   if (!claim.here.empty()) claim.verdict = holds ? Verdict::confirmed : Verdict::not_confirmed;
   return claim;

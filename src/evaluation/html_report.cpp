@@ -71,8 +71,7 @@ std::string base64(const std::string& bytes) {
       return k < bytes.size() ? static_cast<std::uint8_t>(bytes[k]) : std::uint8_t{0};
     };
     const std::uint32_t group = static_cast<std::uint32_t>(byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2));
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
+    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
   }
   return text;
 }
@@ -82,9 +81,7 @@ std::string card(const std::string& value, const std::string& label) {
 }
 
 std::string section(const char* id, const char* title, const std::string& content) {
-  return content.empty()
-             ? ""
-             : fmt::format("<section id=\"{0}\"><h2>{1}</h2>\n{2}</section>\n", id, title, content);
+  return content.empty() ? "" : fmt::format("<section id=\"{0}\"><h2>{1}</h2>\n{2}</section>\n", id, title, content);
 }
 
 std::string names_list(const std::vector<std::string>& names, const std::string& summary) {
@@ -110,22 +107,19 @@ std::string summary_html(const Evaluation& evaluation, const std::vector<GroupSu
       html += card(fmt::format("{:.3f} s", all.seconds->mean), fmt::format("mean time a run, {}", method));
   }
   html += "</div>\n";
-  html += names_list(evaluation.missing, fmt::format("{} {}", evaluation.missing.size(),
-                                                     evaluation.missing_counts_as_zero
-                                                         ? "scenes without a prediction count as zero"
-                                                         : "runs are not there and are left out"));
-  html += names_list(evaluation.failed,
-                     fmt::format("{} runs failed and count as zero", evaluation.failed.size()));
-  for (const std::string& note : evaluation.notes)
-    html += fmt::format("<p class=\"gaps\">{}</p>\n", escape_html(note));
+  html += names_list(evaluation.missing,
+                     fmt::format("{} {}", evaluation.missing.size(),
+                                 evaluation.missing_counts_as_zero ? "scenes without a prediction count as zero"
+                                                                   : "runs are not there and are left out"));
+  html += names_list(evaluation.failed, fmt::format("{} runs failed and count as zero", evaluation.failed.size()));
+  for (const std::string& note : evaluation.notes) html += fmt::format("<p class=\"gaps\">{}</p>\n", escape_html(note));
   return html + format_html(transpose(overview_table(evaluation), 2));
 }
 
 std::string plots_html(const std::vector<Plot>& plots) {
   if (plots.empty()) return "";
   std::string html = "<div class=\"plots\">\n";
-  for (const Plot& plot : plots)
-    html += fmt::format("<figure id=\"{}\">{}</figure>\n", plot.name, format_svg(plot));
+  for (const Plot& plot : plots) html += fmt::format("<figure id=\"{}\">{}</figure>\n", plot.name, format_svg(plot));
   return html +
          "</div>\n<p class=\"note\">Bars are 95 % bootstrap intervals. Hollow markers and dotted lines are "
          "the paper's "
@@ -142,8 +136,7 @@ std::string paper_html(const ReportInput& input, const std::vector<GroupSummary>
 std::string tables_html(const Evaluation& evaluation, const std::vector<GroupSummary>& groups) {
   std::string html;
   const std::vector<Table> tables = result_tables(evaluation, groups);
-  for (std::size_t i = 1; i < tables.size(); ++i)
-    html += format_html(tables[i]);  // the overview stands in the summary
+  for (std::size_t i = 1; i < tables.size(); ++i) html += format_html(tables[i]);  // the overview stands in the summary
   return html;
 }
 
@@ -164,12 +157,11 @@ std::string pictures_html(const ReportInput& input) {
     html += fmt::format(
         "<div class=\"scene\"><h3>{}: micro-recall {:.4f}, {}, {} found</h3>\n<div "
         "class=\"pictures\">\n",
-        escape_html(run->key.name()), run->micro_recall,
-        count_of_tubes(static_cast<int>(run->scores.tubes.size())), run->scores.predicted_tubes);
+        escape_html(run->key.name()), run->micro_recall, count_of_tubes(static_cast<int>(run->scores.tubes.size())),
+        run->scores.predicted_tubes);
     html += image(picture.truth, picture, "ground truth") +
             image(picture.labels, picture, "labels, coloured as the matched tubes") +
-            image(picture.errors, picture, "wrong points orange, points without a label black") +
-            "</div></div>\n";
+            image(picture.errors, picture, "wrong points orange, points without a label black") + "</div></div>\n";
   }
   if (html.empty()) return "";
   return "<p class=\"note\">The worst scenes of each method, then its best one; labels without a tube are "
@@ -205,9 +197,8 @@ std::string format_html_report(const ReportInput& input) {
   const Evaluation& evaluation = input.evaluation;
   const std::vector<GroupSummary> groups = summarize(evaluation.runs);
   std::string html = kHead;
-  html += fmt::format(
-      "<header><h1>How well the tubes were found</h1>\n<p class=\"soft\">{}, tubebin {}</p></header>\n",
-      escape_html(evaluation.source), TUBEBIN_VERSION);
+  html += fmt::format("<header><h1>How well the tubes were found</h1>\n<p class=\"soft\">{}, tubebin {}</p></header>\n",
+                      escape_html(evaluation.source), TUBEBIN_VERSION);
   html +=
       "<nav><a href=\"#summary\">Summary</a><a href=\"#plots\">Plots</a><a href=\"#paper\">Against the "
       "paper</a>"

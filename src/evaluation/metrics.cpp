@@ -63,8 +63,7 @@ struct HooverClasses {
 void find_detected(const Contingency& c, HooverClasses& classes) {
   for (std::size_t row = 0; row < classes.rows.size(); ++row)
     for (std::size_t column = 0; column < columns_of(c); ++column)
-      if (agrees(c.count(row, column), c.truth_size(row)) &&
-          agrees(c.count(row, column), c.predicted_size(column))) {
+      if (agrees(c.count(row, column), c.truth_size(row)) && agrees(c.count(row, column), c.predicted_size(column))) {
         classes.rows[row] = HooverClass::detected;
         classes.column_is_used[column] = true;
       }
@@ -92,8 +91,7 @@ void find_under_segmented(const Contingency& c, HooverClasses& classes) {
     std::vector<std::size_t> parts;
     std::int64_t covered = 0;
     for (std::size_t row = 0; row < classes.rows.size(); ++row) {
-      if (classes.rows[row] != HooverClass::missed || !agrees(c.count(row, column), c.truth_size(row)))
-        continue;
+      if (classes.rows[row] != HooverClass::missed || !agrees(c.count(row, column), c.truth_size(row))) continue;
       parts.push_back(row);
       covered += c.count(row, column);
     }
@@ -103,8 +101,7 @@ void find_under_segmented(const Contingency& c, HooverClasses& classes) {
   }
 }
 
-HooverCounts count_hoover(const Contingency& c, const std::vector<bool>& rows,
-                          const std::vector<bool>& columns) {
+HooverCounts count_hoover(const Contingency& c, const std::vector<bool>& rows, const std::vector<bool>& columns) {
   HooverClasses classes{std::vector<HooverClass>(rows.size(), HooverClass::missed),
                         std::vector<bool>(columns.size(), false)};
   find_detected(c, classes);
@@ -161,8 +158,7 @@ std::vector<bool> rows_of_tubes(const Contingency& c) {
 }  // namespace
 
 SegmentationScores score_tubes(const Contingency& contingency, const Matching& matching) {
-  return score(contingency, matching, rows_of_tubes(contingency),
-               std::vector<bool>(columns_of(contingency), true));
+  return score(contingency, matching, rows_of_tubes(contingency), std::vector<bool>(columns_of(contingency), true));
 }
 
 SegmentationScores score_tubes(const Contingency& contingency, const Matching& matching,
@@ -189,8 +185,7 @@ double adjusted_rand_index(const Counts& counts) {
   double same_predicted = 0.0;
   for (Eigen::Index i = 0; i < counts.size(); ++i) same_both += pairs(counts.data()[i]);
   for (Eigen::Index row = 0; row < counts.rows(); ++row) same_truth += pairs(counts.row(row).sum());
-  for (Eigen::Index column = 0; column < counts.cols(); ++column)
-    same_predicted += pairs(counts.col(column).sum());
+  for (Eigen::Index column = 0; column < counts.cols(); ++column) same_predicted += pairs(counts.col(column).sum());
   const double all = pairs(counts.sum());
   const double expected = all > 0.0 ? same_truth * same_predicted / all : 0.0;
   const double largest = 0.5 * (same_truth + same_predicted);

@@ -8,8 +8,7 @@ Matching match_segments(const Contingency& contingency, BinPoints bin_points) {
   for (std::size_t row = 0; row < contingency.truth_ids.size(); ++row) {
     if (bin_points == BinPoints::left_out && contingency.is_bin(row))
       weights.row(static_cast<Eigen::Index>(row)).setZero();
-    else
-      matching.total += contingency.truth_size(row);
+    else matching.total += contingency.truth_size(row);
   }
   matching.column_of_row = max_weight_assignment(weights);
   for (std::size_t row = 0; row < matching.column_of_row.size(); ++row) {

@@ -29,18 +29,14 @@ class Values {
  public:
   void add(const RunKey& key, double value) { values_[key.set][key.ratio][key.tubes][key.scene] = value; }
 
-  bool has(const std::string& set, double ratio, int tubes) const {
-    return find(set, ratio, tubes) != nullptr;
-  }
+  bool has(const std::string& set, double ratio, int tubes) const { return find(set, ratio, tubes) != nullptr; }
   std::vector<double> at(const std::string& set, double ratio, int tubes) const {
     std::vector<double> list;
     if (const ByScene* scenes = find(set, ratio, tubes))
       for (const auto& [scene, value] : *scenes) list.push_back(value);
     return list;
   }
-  double mean_at(const std::string& set, double ratio, int tubes) const {
-    return mean(at(set, ratio, tubes));
-  }
+  double mean_at(const std::string& set, double ratio, int tubes) const { return mean(at(set, ratio, tubes)); }
   /// Value at `high` minus value at `low` of each scene that has both.
   std::vector<double> rises(const std::string& set, int tubes, double low, double high) const {
     std::vector<double> list;
@@ -96,10 +92,8 @@ Interval relative_change(const Values& values, const std::string& set, double ra
 }
 
 Claim falls_linearly(const Values& recall) {
-  Claim claim{"Micro-recall falls linearly as the number of tubes increases (ratio 0.3)",
-              "Figure 8, both sets",
-              "",
-              {}};
+  Claim claim{
+      "Micro-recall falls linearly as the number of tubes increases (ratio 0.3)", "Figure 8, both sets", "", {}};
   bool holds = true;
   bool measured = false;
   for (const std::string set : {"A", "B"}) {
@@ -107,8 +101,7 @@ Claim falls_linearly(const Values& recall) {
     std::vector<std::vector<double>> groups;
     std::vector<double> means;
     for (const int tubes : recall.tubes(set, kFigure8Ratio)) {
-      if (set == "B" && tubes == 1)
-        continue;  // the paper names it as an exception, which the third claim tests
+      if (set == "B" && tubes == 1) continue;  // the paper names it as an exception, which the third claim tests
       x.push_back(tubes);
       groups.push_back(recall.at(set, kFigure8Ratio, tubes));
       means.push_back(mean(groups.back()));
@@ -152,9 +145,8 @@ Claim a_above_b(const Values& recall) {
       },
       kSeed);
   const std::size_t counts = groups.size() / 2;
-  claim.here =
-      fmt::format("A above B at {} of {} numbers of tubes; A - B on average {}; least with {}: {:+.4f}",
-                  above, counts, signed_interval(difference, 4), count_of_tubes(worst_tubes), worst);
+  claim.here = fmt::format("A above B at {} of {} numbers of tubes; A - B on average {}; least with {}: {:+.4f}", above,
+                           counts, signed_interval(difference, 4), count_of_tubes(worst_tubes), worst);
   claim.verdict = verdict(above == static_cast<int>(counts));
   return claim;
 }
@@ -181,18 +173,15 @@ Claim ten_tubes_lowest(const Values& recall) {
     if (recall.has("B", kFigure8Ratio, tubes) &&
         recall.mean_at("B", kFigure8Ratio, tubes) < recall.mean_at("B", kFigure8Ratio, lowest))
       lowest = tubes;
-  claim.here =
-      fmt::format("{:.4f} to {:.4f}: {}; lowest with {}", recall.mean_at("B", kFigure8Ratio, 1),
-                  recall.mean_at("B", kFigure8Ratio, 10), percent_interval(change), count_of_tubes(lowest));
+  claim.here = fmt::format("{:.4f} to {:.4f}: {}; lowest with {}", recall.mean_at("B", kFigure8Ratio, 1),
+                           recall.mean_at("B", kFigure8Ratio, 10), percent_interval(change), count_of_tubes(lowest));
   claim.verdict = verdict(change.high < 0.0 && lowest == 10);
   return claim;
 }
 
 Claim rises_with_ratio(const Values& recall) {
-  Claim claim{"Micro-recall rises with the downsampling ratio, most at low ratios (10 tubes)",
-              "Figure 9, both sets",
-              "",
-              {}};
+  Claim claim{
+      "Micro-recall rises with the downsampling ratio, most at low ratios (10 tubes)", "Figure 9, both sets", "", {}};
   bool holds = true;
   bool measured = false;
   for (const std::string set : {"A", "B"}) {
@@ -204,26 +193,24 @@ Claim rises_with_ratio(const Values& recall) {
     const double steep = mean(low) / 2.0;  // for each tenth of ratio
     const double rest = (mean(all) - mean(low)) / 7.0;
     holds = holds && rise.low > 0.0 && steep > rest;
-    add_text(claim.here,
-             fmt::format("{}: {} from 0.1 to 1; each tenth adds {:+.5f} up to 0.3, {:+.5f} beyond", set,
-                         signed_interval(rise, 4), steep, rest));
+    add_text(claim.here, fmt::format("{}: {} from 0.1 to 1; each tenth adds {:+.5f} up to 0.3, {:+.5f} beyond", set,
+                                     signed_interval(rise, 4), steep, rest));
   }
   if (measured) claim.verdict = verdict(holds);
   return claim;
 }
 
 Claim flat_above(const Values& recall, const std::string& set, double ratio) {
-  Claim claim{fmt::format("Above a ratio of {} micro-recall on set {} does not rise significantly (10 tubes)",
-                          ratio, set),
-              "Figure 9",
-              "",
-              {}};
+  Claim claim{
+      fmt::format("Above a ratio of {} micro-recall on set {} does not rise significantly (10 tubes)", ratio, set),
+      "Figure 9",
+      "",
+      {}};
   const std::vector<double> beyond = recall.rises(set, kFigure9Tubes, ratio, 1.0);
   const std::vector<double> all = recall.rises(set, kFigure9Tubes, 0.1, 1.0);
   if (beyond.empty() || all.empty()) return claim;
   const Interval rise = bootstrap_mean(beyond, kSeed);
-  claim.here =
-      fmt::format("{} from {} to 1, of {:+.4f} from 0.1 to 1", signed_interval(rise, 5), ratio, mean(all));
+  claim.here = fmt::format("{} from {} to 1, of {:+.4f} from 0.1 to 1", signed_interval(rise, 5), ratio, mean(all));
   claim.verdict = verdict(rise.low <= 0.0 || rise.mean <= kFlat * mean(all));
   return claim;
 }

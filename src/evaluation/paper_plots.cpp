@@ -13,9 +13,7 @@ namespace {
 
 constexpr int kBlack = 6;
 
-PlotPoint point(double x, const Interval& interval) {
-  return {x, interval.mean, interval.low, interval.high};
-}
+PlotPoint point(double x, const Interval& interval) { return {x, interval.mean, interval.low, interval.high}; }
 PlotPoint point(double x, double y) { return {x, y, y, y}; }
 
 /// Micro-recall of every method and set, over the groups that `x_of` gives a place.
@@ -53,8 +51,7 @@ Plot figure_8(const std::vector<GroupSummary>& groups) {
   plot.name = "figure_8";
   plot.title = fmt::format("Figure 8: micro-recall by number of tubes, ratio {}", ratio);
   plot.x_label = "number of tubes";
-  if (ratio == 0.3)
-    add_paper_points(plot, paper_figures().micro_recall_set_b, "paper, set B (values in its text)");
+  if (ratio == 0.3) add_paper_points(plot, paper_figures().micro_recall_set_b, "paper, set B (values in its text)");
   return plot;
 }
 
@@ -68,23 +65,18 @@ Plot figure_9(const std::vector<GroupSummary>& groups) {
   plot.x_label = "downsampling ratio";
   const auto& paper = paper_figures().micro_recall_set_b;
   if (paper.contains(tubes) && !plot.series.empty())
-    plot.series.push_back({"paper, set B (value in its text)",
-                           kBlack,
-                           SeriesStyle::paper,
-                           {point(0.3, paper.at(tubes))},
-                           false});
+    plot.series.push_back(
+        {"paper, set B (value in its text)", kBlack, SeriesStyle::paper, {point(0.3, paper.at(tubes))}, false});
   return plot;
 }
 
 Plot table_1(const GenerationSeconds& seconds) {
-  Plot plot{
-      "table_1", "Table 1: seconds to generate a test case", "number of tubes", "seconds (logarithmic)", true,
-      {}};
+  Plot plot{"table_1", "Table 1: seconds to generate a test case", "number of tubes", "seconds (logarithmic)", true,
+            {}};
   for (const auto& [set, by_tubes] : seconds) {
     const int color = static_cast<int>(plot.series.size()) / 2;
     PlotSeries ours{fmt::format("here, set {}", set), color, SeriesStyle::measured, {}};
-    for (const auto& [tubes, values] : by_tubes)
-      ours.points.push_back(point(tubes, bootstrap_mean(values, 1)));
+    for (const auto& [tubes, values] : by_tubes) ours.points.push_back(point(tubes, bootstrap_mean(values, 1)));
     plot.series.push_back(std::move(ours));
     const auto paper = paper_figures().generation_seconds.find(set);
     if (paper == paper_figures().generation_seconds.end()) continue;

@@ -23,15 +23,13 @@ Table paper_table_1(const GenerationSeconds& seconds) {
   std::map<int, std::vector<Cell>> rows;
   for (const auto& [set, by_tubes] : seconds) {
     for (const char* column : {"", " paper", " speed-up"}) table.headers.push_back(set + column);
-    for (const auto& [tubes, values] : by_tubes)
-      rows.try_emplace(tubes, std::vector<Cell>{integer_cell(tubes)});
+    for (const auto& [tubes, values] : by_tubes) rows.try_emplace(tubes, std::vector<Cell>{integer_cell(tubes)});
   }
   for (auto& [tubes, row] : rows) {
     for (const auto& [set, by_tubes] : seconds) {
       const auto values = by_tubes.find(tubes);
       const auto paper_set = paper_figures().generation_seconds.find(set);
-      const bool has_paper =
-          paper_set != paper_figures().generation_seconds.end() && paper_set->second.contains(tubes);
+      const bool has_paper = paper_set != paper_figures().generation_seconds.end() && paper_set->second.contains(tubes);
       const bool has_ours = values != by_tubes.end();
       row.push_back(has_ours ? number_cell(mean(values->second), 3) : Cell());
       row.push_back(has_paper ? number_cell(paper_set->second.at(tubes), 2) : Cell());
@@ -73,9 +71,8 @@ std::vector<Table> paper_tables(const Evaluation& evaluation, const std::vector<
                                 const GenerationSeconds& seconds) {
   std::vector<Table> tables;
   const auto add_claims = [&](const std::string& title, const std::vector<Claim>& claims) {
-    const bool is_measured = std::any_of(claims.begin(), claims.end(), [](const Claim& claim) {
-      return claim.verdict != Verdict::not_measured;
-    });
+    const bool is_measured = std::any_of(claims.begin(), claims.end(),
+                                         [](const Claim& claim) { return claim.verdict != Verdict::not_measured; });
     if (is_measured) tables.push_back(claims_table(title, claims));
   };
   add_claims("Claims of Section 6.1", generation_claims(seconds));

@@ -28,8 +28,7 @@ std::vector<Axis> axes_of(const PlacedTube& placed) {
   std::vector<Axis> axes;
   for (const Cylinder& c : placed.tube.cylinders)
     axes.push_back({placed.node_in_world(c.node_a), placed.node_in_world(c.node_b),
-                    degrees[static_cast<std::size_t>(c.node_a)] < 2,
-                    degrees[static_cast<std::size_t>(c.node_b)] < 2});
+                    degrees[static_cast<std::size_t>(c.node_a)] < 2, degrees[static_cast<std::size_t>(c.node_b)] < 2});
   return axes;
 }
 
@@ -42,9 +41,7 @@ std::optional<double> axis_distance(const Axis& a, const Axis& b) {
   const double ee = e.squaredNorm();
   const double de = d.dot(e);
   const double denominator = dd * ee - de * de;
-  double s = denominator > 1e-12 * dd * ee
-                 ? std::clamp((de * e.dot(r) - d.dot(r) * ee) / denominator, 0.0, 1.0)
-                 : 0.5;
+  double s = denominator > 1e-12 * dd * ee ? std::clamp((de * e.dot(r) - d.dot(r) * ee) / denominator, 0.0, 1.0) : 0.5;
   const double t = std::clamp((de * s + e.dot(r)) / ee, 0.0, 1.0);
   s = std::clamp((de * t - d.dot(r)) / dd, 0.0, 1.0);
   const bool at_free_end = (s <= 0.0 && a.start_is_free) || (s >= 1.0 && a.end_is_free) ||
@@ -58,8 +55,7 @@ std::optional<double> gap(const std::vector<Axis>& a, const std::vector<Axis>& b
   std::optional<double> smallest;
   for (const Axis& first : a)
     for (const Axis& second : b)
-      if (const auto distance = axis_distance(first, second);
-          distance && (!smallest || *distance - radii < *smallest))
+      if (const auto distance = axis_distance(first, second); distance && (!smallest || *distance - radii < *smallest))
         smallest = *distance - radii;
   return smallest;
 }
@@ -87,8 +83,7 @@ void add_heights_and_spread(const std::vector<CenterlineSamples>& samples, PileS
     statistics.visible_share += tube.visible_fraction() / static_cast<double>(samples.size());
 }
 
-void add_contacts(const std::vector<std::vector<Axis>>& axes, const Scene& scene,
-                  PileStatistics& statistics) {
+void add_contacts(const std::vector<std::vector<Axis>>& axes, const Scene& scene, PileStatistics& statistics) {
   int touching = 0;
   for (std::size_t i = 0; i < axes.size(); ++i)
     for (std::size_t j = i + 1; j < axes.size(); ++j) {
@@ -100,8 +95,7 @@ void add_contacts(const std::vector<std::vector<Axis>>& axes, const Scene& scene
   statistics.contacts = 2.0 * touching / static_cast<double>(axes.size());
 }
 
-void add_cylinders(const std::vector<std::vector<Axis>>& axes, const Scene& scene,
-                   PileStatistics& statistics) {
+void add_cylinders(const std::vector<std::vector<Axis>>& axes, const Scene& scene, PileStatistics& statistics) {
   double tilt = 0.0;
   double length = 0.0;
   for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -109,8 +103,7 @@ void add_cylinders(const std::vector<std::vector<Axis>>& axes, const Scene& scen
     for (const Axis& axis : axes[i]) {
       tilt += axis.length() * std::asin(std::min(1.0, std::abs(axis.direction().z())));
       length += axis.length();
-      statistics.top_height =
-          std::max({statistics.top_height, axis.start.z() + radius, axis.end.z() + radius});
+      statistics.top_height = std::max({statistics.top_height, axis.start.z() + radius, axis.end.z() + radius});
       statistics.penetration = std::max(statistics.penetration, -lowest_point(axis, radius));
     }
   }
@@ -180,8 +173,7 @@ Table pile_table(const std::vector<PileComparison>& comparisons) {
       published_all += static_cast<int>(published.size());
       table.rows.push_back({comparison.name, column.name, number_cell(mean(published), column.decimals),
                             number_cell(mean(here), column.decimals), number_cell(low, column.decimals),
-                            number_cell(high, column.decimals),
-                            fmt::format("{} of {}", within, published.size())});
+                            number_cell(high, column.decimals), fmt::format("{} of {}", within, published.size())});
     }
   }
   table.note = fmt::format(

@@ -134,8 +134,8 @@ std::string marker(double x, double y, const PlotSeries& series) {
     case 0:
       return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" {}/>", x, y, r, paint);
     case 1:
-      return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" {}/>",
-                         x - 0.9 * r, y - 0.9 * r, 1.8 * r, 1.8 * r, paint);
+      return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" {}/>", x - 0.9 * r,
+                         y - 0.9 * r, 1.8 * r, 1.8 * r, paint);
     case 2:
       return polygon({{0.0, -1.2}, {1.1, 0.8}, {-1.1, 0.8}});
     case 3:
@@ -186,8 +186,8 @@ std::string axes_svg(const Plot& plot, const Axis& x, const Axis& y) {
   svg += text(0.5 * (x.start + x.end), y.start + 44.0, "middle", plot.x_label);
   const double middle = 0.5 * (y.start + y.end);
   svg += fmt::format(
-      "<text x=\"18\" y=\"{0:.1f}\" text-anchor=\"middle\" transform=\"rotate(-90 18 {0:.1f})\">{1}</text>\n",
-      middle, escape_html(plot.y_label));
+      "<text x=\"18\" y=\"{0:.1f}\" text-anchor=\"middle\" transform=\"rotate(-90 18 {0:.1f})\">{1}</text>\n", middle,
+      escape_html(plot.y_label));
   return svg;
 }
 
@@ -205,11 +205,9 @@ std::string series_svg(const PlotSeries& series, const Axis& x, const Axis& y) {
            line(px - 3.0, high, px + 3.0, high, stroke);
   }
   if (series.joined && series.points.size() > 1)
-    svg += fmt::format(
-        "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"{}\"/>\n", path,
-        color_of(series), dashes_of(series.style));
-  for (const PlotPoint& point : series.points)
-    svg += marker(x.place(point.x), y.place(point.y), series) + "\n";
+    svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"{}\"/>\n",
+                       path, color_of(series), dashes_of(series.style));
+  for (const PlotPoint& point : series.points) svg += marker(x.place(point.x), y.place(point.y), series) + "\n";
   return svg + "</g>\n";
 }
 

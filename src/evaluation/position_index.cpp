@@ -53,8 +53,7 @@ class PointChains {
 };
 
 bool in_the_same_order(std::span<const Point> a, std::span<const Point> b) {
-  return a.size() == b.size() &&
-         std::equal(a.begin(), a.end(), b.begin(), [](const Point& p, const Point& q) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const Point& p, const Point& q) {
            return p == q || (!is_finite(p) && !is_finite(q));
          });
 }
@@ -66,16 +65,14 @@ std::vector<std::uint32_t> identity(std::span<const Point> points) {
   return result;
 }
 
-void match_equal(std::span<const Point> queries, std::span<const Point> reference,
-                 std::vector<std::uint32_t>& result) {
+void match_equal(std::span<const Point> queries, std::span<const Point> reference, std::vector<std::uint32_t>& result) {
   PointChains chains(reference.size());
   for (std::size_t i = reference.size(); i-- > 0;)
     if (is_finite(reference[i])) chains.add(position_hash(reference[i]), static_cast<std::uint32_t>(i));
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const Point& query = queries[i];
     if (!is_finite(query)) continue;
-    result[i] =
-        chains.take_first(position_hash(query), [&](std::uint32_t p) { return reference[p] == query; });
+    result[i] = chains.take_first(position_hash(query), [&](std::uint32_t p) { return reference[p] == query; });
   }
 }
 
@@ -100,13 +97,10 @@ void match_near(std::span<const Point> queries, std::span<const Point> reference
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const Point& query = queries[i];
     if (result[i] != kNoPoint || !is_finite(query)) continue;
-    const auto is_near = [&](std::uint32_t p) {
-      return (reference[p] - query).cwiseAbs().maxCoeff() <= tolerance;
-    };
+    const auto is_near = [&](std::uint32_t p) { return (reference[p] - query).cwiseAbs().maxCoeff() <= tolerance; };
     for (int corner = 0; corner < 8 && result[i] == kNoPoint; ++corner) {
       const auto side = [&](int axis) {
-        const double offset =
-            (corner >> axis) & 1 ? static_cast<double>(tolerance) : -static_cast<double>(tolerance);
+        const double offset = (corner >> axis) & 1 ? static_cast<double>(tolerance) : -static_cast<double>(tolerance);
         return cell(static_cast<double>(query[axis]) + offset);
       };
       result[i] = chains.take_first(mix(side(0), side(1), side(2)), is_near);
@@ -116,8 +110,8 @@ void match_near(std::span<const Point> queries, std::span<const Point> reference
 
 }  // namespace
 
-std::vector<std::uint32_t> corresponding_points(std::span<const Point> queries,
-                                                std::span<const Point> reference, float tolerance) {
+std::vector<std::uint32_t> corresponding_points(std::span<const Point> queries, std::span<const Point> reference,
+                                                float tolerance) {
   if (in_the_same_order(queries, reference)) return identity(queries);
   std::vector<std::uint32_t> result(queries.size(), kNoPoint);
   match_equal(queries, reference, result);

@@ -13,8 +13,8 @@ namespace tubebin {
 /// positions that differ by up to `tolerance` (metres) in each coordinate. No point is given out twice; of
 /// several points at one position the k-th query gets the k-th. Points with NaN coordinates correspond to
 /// none.
-std::vector<std::uint32_t> corresponding_points(std::span<const Point> queries,
-                                                std::span<const Point> reference, float tolerance);
+std::vector<std::uint32_t> corresponding_points(std::span<const Point> queries, std::span<const Point> reference,
+                                                float tolerance);
 
 constexpr std::uint32_t kNoPoint = UINT32_MAX;
 

@@ -64,10 +64,9 @@ void keep_field(Cloud& cloud, SegmentField field, const std::string& path) {
   other.clear();
 }
 
-RunScore score_scene(const std::string& dataset, const std::string& scene, const PredictionFiles& files,
-                     RunKey key, SegmentField field) {
-  const std::string truth_path =
-      files.filtered.empty() ? find_cloud(dataset + "/" + scene + "/cloud") : files.filtered;
+RunScore score_scene(const std::string& dataset, const std::string& scene, const PredictionFiles& files, RunKey key,
+                     SegmentField field) {
+  const std::string truth_path = files.filtered.empty() ? find_cloud(dataset + "/" + scene + "/cloud") : files.filtered;
   const Cloud truth = read_ground_truth(truth_path);
   Cloud labeled;
   if (!files.labeled.empty()) {
@@ -95,16 +94,14 @@ RunScore score_scene(const std::string& dataset, const std::string& scene, const
 
 }  // namespace
 
-Evaluation score_predictions(const std::string& dataset, const std::string& folder,
-                             const PredictionOptions& options) {
+Evaluation score_predictions(const std::string& dataset, const std::string& folder, const PredictionOptions& options) {
   const std::vector<std::string> scenes = list_scenes(dataset);
   if (!fs::is_directory(folder)) throw_io_error("{}: is no folder", folder);
   std::vector<PredictionFiles> files;
   for (const std::string& scene : scenes) files.push_back(find_prediction(folder, scene));
   if (std::all_of(files.begin(), files.end(), [](const PredictionFiles& f) { return f.labeled.empty(); }))
-    throw_io_error(
-        "{}: has no prediction for any of the {} scenes of {}; expected {}/{}.pcd or {}/{}/labeled.pcd",
-        folder, scenes.size(), dataset, folder, scenes.front(), folder, scenes.front());
+    throw_io_error("{}: has no prediction for any of the {} scenes of {}; expected {}/{}.pcd or {}/{}/labeled.pcd",
+                   folder, scenes.size(), dataset, folder, scenes.front(), folder, scenes.front());
 
   Evaluation evaluation;
   evaluation.source = folder;

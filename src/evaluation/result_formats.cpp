@@ -15,12 +15,9 @@ OrderedJson rows_as_objects(const Table& table) {
   for (const auto& cells : table.rows) {
     OrderedJson row;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (cells[i].value)
-        row[table.headers[i]] = *cells[i].value;
-      else if (cells[i].text.empty())
-        row[table.headers[i]] = nullptr;
-      else
-        row[table.headers[i]] = cells[i].text;
+      if (cells[i].value) row[table.headers[i]] = *cells[i].value;
+      else if (cells[i].text.empty()) row[table.headers[i]] = nullptr;
+      else row[table.headers[i]] = cells[i].text;
     }
     rows.push_back(std::move(row));
   }
@@ -57,15 +54,14 @@ std::string format_json(const Evaluation& evaluation, const std::vector<GroupSum
 }
 
 /// A ground-truth segment with its match.
-std::vector<Cell> matching_row(const Contingency& contingency, const Matching& matching,
-                               const PairedIds& pairs, std::size_t row) {
+std::vector<Cell> matching_row(const Contingency& contingency, const Matching& matching, const PairedIds& pairs,
+                               std::size_t row) {
   const auto name = [](SegmentId id, bool is_color) {
     return fmt::format(fmt::runtime(is_color ? "#{:06x}" : "{}"), id);
   };
   const std::int64_t truth_size = contingency.truth_size(row);
   const std::string bin = contingency.is_bin(row) ? " (bin)" : "";
-  std::vector<Cell> cells = {name(contingency.truth_ids[row], pairs.truth_is_color) + bin,
-                             integer_cell(truth_size)};
+  std::vector<Cell> cells = {name(contingency.truth_ids[row], pairs.truth_is_color) + bin, integer_cell(truth_size)};
   std::int64_t predicted_size = 0;
   std::int64_t correct = 0;
   if (const int matched = matching.column_of_row[row]; matched != kUnmatched) {
@@ -79,8 +75,7 @@ std::vector<Cell> matching_row(const Contingency& contingency, const Matching& m
   cells.push_back(integer_cell(predicted_size));
   cells.push_back(integer_cell(correct));
   for (const std::int64_t whole : {truth_size, predicted_size, truth_size + predicted_size - correct})
-    cells.push_back(
-        number_cell(whole > 0 ? static_cast<double>(correct) / static_cast<double>(whole) : 0.0, 4));
+    cells.push_back(number_cell(whole > 0 ? static_cast<double>(correct) / static_cast<double>(whole) : 0.0, 4));
   return cells;
 }
 
@@ -91,10 +86,9 @@ std::string pair_summary(const PairedIds& pairs, const Contingency& contingency,
       std::accumulate(contingency.unlabeled.begin(), contingency.unlabeled.end(), std::int64_t{0});
   text += fmt::format("{} points without a label", unlabeled);
   if (pairs.missing > 0) text += fmt::format(" ({} of them not in the labelled cloud)", pairs.missing);
-  if (pairs.unannotated > 0)
-    text += fmt::format("; {} black points without ground truth left out", pairs.unannotated);
-  return text + fmt::format("\nmicro-recall {:.6f} = {} / {} points\n", matching.micro_recall(),
-                            matching.correct, matching.total);
+  if (pairs.unannotated > 0) text += fmt::format("; {} black points without ground truth left out", pairs.unannotated);
+  return text + fmt::format("\nmicro-recall {:.6f} = {} / {} points\n", matching.micro_recall(), matching.correct,
+                            matching.total);
 }
 
 }  // namespace
@@ -128,8 +122,7 @@ std::string format_pair(const PairedIds& pairs, TableFormat format) {
          pair_summary(pairs, contingency, matching);
 }
 
-std::string format_results(const Evaluation& evaluation, TableFormat format,
-                           const GenerationSeconds* generation) {
+std::string format_results(const Evaluation& evaluation, TableFormat format, const GenerationSeconds* generation) {
   const std::vector<GroupSummary> groups = summarize(evaluation.runs);
   if (format == TableFormat::json) return format_json(evaluation, groups, generation);
   if (format == TableFormat::csv) return format_csv(group_table(groups));

@@ -14,8 +14,8 @@ constexpr double kPaperFigure8Ratio = 0.3;
 constexpr int kPaperFigure9Tubes = 10;
 
 Cell interval_cell(const Interval& interval, int decimals) {
-  return {fmt::format("{:.{}f} [{:.{}f}, {:.{}f}]", interval.mean, decimals, interval.low, decimals,
-                      interval.high, decimals),
+  return {fmt::format("{:.{}f} [{:.{}f}, {:.{}f}]", interval.mean, decimals, interval.low, decimals, interval.high,
+                      decimals),
           interval.mean};
 }
 
@@ -42,8 +42,7 @@ std::vector<double> ratios_of(const std::vector<GroupSummary>& groups) {
 }
 
 const GroupSummary* find_group(const std::vector<GroupSummary>& groups, const GroupKey& key) {
-  const auto group =
-      std::find_if(groups.begin(), groups.end(), [&](const GroupSummary& g) { return g.key == key; });
+  const auto group = std::find_if(groups.begin(), groups.end(), [&](const GroupSummary& g) { return g.key == key; });
   return group == groups.end() ? nullptr : &*group;
 }
 
@@ -54,8 +53,8 @@ std::vector<std::string> set_headers(std::string first, const std::vector<GroupS
 }
 
 /// A row's cells: the mean micro-recall of each set under the row's condition.
-std::vector<Cell> recall_row(Cell first, const std::vector<GroupSummary>& groups, const std::string& method,
-                             int tubes, double ratio, bool& has_value) {
+std::vector<Cell> recall_row(Cell first, const std::vector<GroupSummary>& groups, const std::string& method, int tubes,
+                             double ratio, bool& has_value) {
   std::vector<Cell> row = {std::move(first)};
   for (const std::string& set : sets_of(groups)) {
     const GroupSummary* group = find_group(groups, {method, set, tubes, ratio});
@@ -85,15 +84,13 @@ Table grid(std::string title, const std::vector<GroupSummary>& groups, const std
 }
 
 const std::vector<std::string> kMeasureHeaders = {
-    "tube recall",      "tube precision", "tube IoU",         "panoptic quality", "AP at 0.5",
-    "AP at 0.5:0.95",   "Rand index",     "detected",         "over-segmented",   "under-segmented",
-    "missed",           "noise",          "tube count error", "tube count bias",  "model to tube, mm",
-    "tube to model, mm"};
+    "tube recall",      "tube precision",  "tube IoU",          "panoptic quality", "AP at 0.5", "AP at 0.5:0.95",
+    "Rand index",       "detected",        "over-segmented",    "under-segmented",  "missed",    "noise",
+    "tube count error", "tube count bias", "model to tube, mm", "tube to model, mm"};
 
 void append_measures(const PooledScores& pooled, std::vector<Cell>& row) {
-  for (const double value :
-       {pooled.recall, pooled.precision, pooled.iou, pooled.panoptic_quality, pooled.average_precision_50,
-        pooled.average_precision, pooled.adjusted_rand_index})
+  for (const double value : {pooled.recall, pooled.precision, pooled.iou, pooled.panoptic_quality,
+                             pooled.average_precision_50, pooled.average_precision, pooled.adjusted_rand_index})
     row.push_back(number_cell(value, 3));
   for (const double share :
        {pooled.detected, pooled.over_segmented, pooled.under_segmented, pooled.missed, pooled.noise})
@@ -109,9 +106,8 @@ std::vector<Table> visibility_tables(const Evaluation& evaluation) {
   std::map<std::string, Table> by_method;
   const Table all = visibility_table(evaluation);
   for (const auto& row : all.rows) {
-    Table& table =
-        by_method.try_emplace(row[0].text, Table{all.title + ", " + row[0].text, all.headers, {}, all.note})
-            .first->second;
+    Table& table = by_method.try_emplace(row[0].text, Table{all.title + ", " + row[0].text, all.headers, {}, all.note})
+                       .first->second;
     table.rows.push_back(row);
   }
   std::vector<Table> tables;
@@ -190,25 +186,22 @@ Table figure_9_table(const std::vector<GroupSummary>& groups, const std::string&
               ""};
   for (const double ratio : ratios_of(groups)) {
     bool has_value = false;
-    std::vector<Cell> row =
-        recall_row({fmt::format("{}", ratio), ratio}, groups, method, tubes, ratio, has_value);
+    std::vector<Cell> row = recall_row({fmt::format("{}", ratio), ratio}, groups, method, tubes, ratio, has_value);
     if (has_value) table.rows.push_back(std::move(row));
   }
   return table;
 }
 
-Table recall_grid(const std::vector<GroupSummary>& groups, const std::string& method,
-                  const std::string& set) {
-  return grid(fmt::format("Mean micro-recall by ratio and number of tubes, {}, set {}", method, set), groups,
-              method, set, [](const GroupSummary& group) { return number_cell(group.micro_recall.mean, 3); });
+Table recall_grid(const std::vector<GroupSummary>& groups, const std::string& method, const std::string& set) {
+  return grid(fmt::format("Mean micro-recall by ratio and number of tubes, {}, set {}", method, set), groups, method,
+              set, [](const GroupSummary& group) { return number_cell(group.micro_recall.mean, 3); });
 }
 
 Table time_grid(const std::vector<GroupSummary>& groups, const std::string& method, const std::string& set) {
-  return grid(fmt::format("Mean modelling time in seconds by ratio and number of tubes, {}, set {} (Table 2)",
-                          method, set),
-              groups, method, set, [](const GroupSummary& group) {
-                return group.seconds ? number_cell(group.seconds->mean, 3) : Cell();
-              });
+  return grid(
+      fmt::format("Mean modelling time in seconds by ratio and number of tubes, {}, set {} (Table 2)", method, set),
+      groups, method, set,
+      [](const GroupSummary& group) { return group.seconds ? number_cell(group.seconds->mean, 3) : Cell(); });
 }
 
 Table visibility_table(const Evaluation& evaluation) {
@@ -297,12 +290,10 @@ Table group_table(const std::vector<GroupSummary>& groups) {
                              integer_cell(group.runs),
                              integer_cell(group.failed)};
     const auto add = [&](double value) { row.push_back(number_cell(value, 6)); };
-    for (const double value : {group.micro_recall.mean, group.micro_recall.low, group.micro_recall.high})
-      add(value);
+    for (const double value : {group.micro_recall.mean, group.micro_recall.low, group.micro_recall.high}) add(value);
     if (group.seconds)
       for (const double value : {group.seconds->mean, group.seconds->low, group.seconds->high}) add(value);
-    else
-      row.insert(row.end(), 3, Cell());
+    else row.insert(row.end(), 3, Cell());
     for (const double value : {p.recall, p.precision, p.iou, p.panoptic_quality, p.average_precision_50,
                                p.average_precision, p.adjusted_rand_index, p.detected, p.over_segmented,
                                p.under_segmented, p.missed, p.noise, p.tube_count_error, p.tube_count_bias})
@@ -311,8 +302,7 @@ Table group_table(const std::vector<GroupSummary>& groups) {
       for (const double value :
            {p.centerline_model_mean, p.centerline_model_p95, p.centerline_truth_mean, p.centerline_truth_p95})
         add(value);
-    else
-      row.insert(row.end(), 4, Cell());
+    else row.insert(row.end(), 4, Cell());
     table.rows.push_back(std::move(row));
   }
   return table;

@@ -39,10 +39,9 @@ Index read_index(const std::string& folder) {
   if (!fs::is_directory(folder)) throw_io_error("{}: is no folder", folder);
   const std::string path = folder + "/index.json";
   if (!fs::exists(path))
-    throw_io_error("{}: has no index.json, so it is no results folder of model_tubes{}", folder,
-                   fs::exists(folder + "/manifest.jsonl")
-                       ? "; it is a data set, which --predictions can be scored on"
-                       : "");
+    throw_io_error(
+        "{}: has no index.json, so it is no results folder of model_tubes{}", folder,
+        fs::exists(folder + "/manifest.jsonl") ? "; it is a data set, which --predictions can be scored on" : "");
   const nlohmann::json json = parse_json(read_file(path), path);
   const JsonPlace root(json, path);
   check_format(root, kIndexFormat);
@@ -63,9 +62,8 @@ Index read_index(const std::string& folder) {
 
 Contingency read_contingency(const JsonPlace& root, const std::string& path) {
   if (!root.has("contingency"))
-    throw_io_error(
-        "{}: /contingency: missing; the cloud has neither labels nor known colours, so it cannot be scored",
-        path);
+    throw_io_error("{}: /contingency: missing; the cloud has neither labels nor known colours, so it cannot be scored",
+                   path);
   std::vector<std::tuple<SegmentId, SegmentId, std::int64_t>> entries;
   std::set<SegmentId> truth_ids;
   std::set<SegmentId> predicted_ids;
@@ -82,19 +80,16 @@ Contingency read_contingency(const JsonPlace& root, const std::string& path) {
   contingency.truth_ids.assign(truth_ids.begin(), truth_ids.end());
   contingency.predicted_ids.assign(predicted_ids.begin(), predicted_ids.end());
   contingency.unlabeled.assign(truth_ids.size(), 0);
-  contingency.counts = Counts::Zero(static_cast<Eigen::Index>(truth_ids.size()),
-                                    static_cast<Eigen::Index>(predicted_ids.size()));
+  contingency.counts =
+      Counts::Zero(static_cast<Eigen::Index>(truth_ids.size()), static_cast<Eigen::Index>(predicted_ids.size()));
   for (const auto& [truth, predicted, points] : entries) {
     const auto row = std::distance(truth_ids.begin(), truth_ids.find(truth));
-    if (predicted == kNullId)
-      contingency.unlabeled[static_cast<std::size_t>(row)] += points;
-    else
-      contingency.counts(row, std::distance(predicted_ids.begin(), predicted_ids.find(predicted))) += points;
+    if (predicted == kNullId) contingency.unlabeled[static_cast<std::size_t>(row)] += points;
+    else contingency.counts(row, std::distance(predicted_ids.begin(), predicted_ids.find(predicted))) += points;
   }
   const auto filtered_points = static_cast<std::int64_t>(root.at("filtered_points").whole(0, kMaxPoints));
   if (contingency.total() != filtered_points)
-    root.at("filtered_points")
-        .fail(fmt::format("{}, which the contingency's points sum to", contingency.total()));
+    root.at("filtered_points").fail(fmt::format("{}, which the contingency's points sum to", contingency.total()));
   return contingency;
 }
 
@@ -124,16 +119,14 @@ RunScore read_run(const std::string& folder, RunKey key, const SceneTruth* truth
   key.set = root.at("set").text();
   key.tubes = root.at("tubes").integer({0, 1000000});
   key.case_number = root.at("case").integer({0, 1000000000});
-  if (root.at("scene").text() != key.scene)
-    root.at("scene").fail(fmt::format("\"{}\", the folder's scene", key.scene));
+  if (root.at("scene").text() != key.scene) root.at("scene").fail(fmt::format("\"{}\", the folder's scene", key.scene));
   const std::string model_path = folder + "/model.json";
   const bool has_model = truth != nullptr && fs::exists(model_path);
   const Contingency contingency = read_contingency(root, path);
   const std::vector<Centerline> model = has_model ? read_model(model_path) : std::vector<Centerline>{};
   RunScore run = score_run(key, contingency, match_segments(contingency), truth, model);
   // Segments without a point in the filtered cloud are tubes of the model all the same.
-  run.scores.predicted_tubes =
-      std::max(run.scores.predicted_tubes, root.at("model_tubes").integer({0, kMaxPoints}));
+  run.scores.predicted_tubes = std::max(run.scores.predicted_tubes, root.at("model_tubes").integer({0, kMaxPoints}));
   run.folder = folder;
   if (fs::exists(folder + "/filtered.pcd") && fs::exists(folder + "/labeled.pcd")) {
     run.filtered = folder + "/filtered.pcd";

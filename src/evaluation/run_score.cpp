@@ -26,8 +26,7 @@ void add_scene_facts(TubeScore& score, const SceneTruth& truth, const std::vecto
   const auto modelled = tube_index(*score.predicted_id, model.size());
   if (!modelled) return;
   const Centerline& line = model[*modelled];
-  if (std::all_of(line.begin(), line.end(), [](const CenterlinePiece& piece) { return piece.bridged; }))
-    return;
+  if (std::all_of(line.begin(), line.end(), [](const CenterlinePiece& piece) { return piece.bridged; })) return;
   score.centerline_error = centerline_error(truth.centerlines[*tube], truth.samples[*tube], line);
 }
 
@@ -87,8 +86,8 @@ SceneTruth::SceneTruth(const Scene& scene) : samples(sample_centerlines(scene)) 
   for (const PlacedTube& tube : scene.tubes) centerlines.push_back(centerline(tube));
 }
 
-RunScore score_run(const RunKey& key, const Contingency& contingency, const Matching& matching,
-                   const SceneTruth* truth, const std::vector<Centerline>& model) {
+RunScore score_run(const RunKey& key, const Contingency& contingency, const Matching& matching, const SceneTruth* truth,
+                   const std::vector<Centerline>& model) {
   RunScore run;
   run.key = key;
   run.micro_recall = matching.micro_recall();

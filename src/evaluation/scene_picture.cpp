@@ -86,8 +86,7 @@ std::vector<std::pair<SegmentId, SegmentId>> matched_pairs(const LabelledPoints&
   std::vector<std::pair<SegmentId, SegmentId>> pairs;
   for (std::size_t row = 0; row < matching.column_of_row.size(); ++row)
     if (const int column = matching.column_of_row[row]; column != kUnmatched)
-      pairs.emplace_back(contingency.predicted_ids[static_cast<std::size_t>(column)],
-                         contingency.truth_ids[row]);
+      pairs.emplace_back(contingency.predicted_ids[static_cast<std::size_t>(column)], contingency.truth_ids[row]);
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
@@ -97,14 +96,11 @@ std::vector<std::pair<SegmentId, SegmentId>> matched_pairs(const LabelledPoints&
 ScenePicture draw_scene(const LabelledPoints& points) {
   const View view = make_view(points);
   const auto pairs = matched_pairs(points);
-  const SegmentId largest =
-      points.truth.empty() ? 0 : *std::max_element(points.truth.begin(), points.truth.end());
+  const SegmentId largest = points.truth.empty() ? 0 : *std::max_element(points.truth.begin(), points.truth.end());
   const std::vector<Color> colors = label_colors(largest);
   const auto matched_truth = [&](std::size_t i) -> std::optional<SegmentId> {
-    const auto pair =
-        std::lower_bound(pairs.begin(), pairs.end(), std::pair(points.predicted[i], SegmentId{0}));
-    return pair != pairs.end() && pair->first == points.predicted[i] ? std::optional(pair->second)
-                                                                     : std::nullopt;
+    const auto pair = std::lower_bound(pairs.begin(), pairs.end(), std::pair(points.predicted[i], SegmentId{0}));
+    return pair != pairs.end() && pair->first == points.predicted[i] ? std::optional(pair->second) : std::nullopt;
   };
   ScenePicture picture;
   picture.width = view.width;

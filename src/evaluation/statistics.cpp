@@ -61,8 +61,7 @@ double rank_correlation(std::span<const double> x, std::span<const double> y) {
 }
 
 Interval bootstrap_of_means(const std::vector<std::vector<double>>& groups,
-                            const std::function<double(std::span<const double> means)>& statistic,
-                            std::uint64_t seed) {
+                            const std::function<double(std::span<const double> means)>& statistic, std::uint64_t seed) {
   std::vector<double> means;
   for (const std::vector<double>& group : groups) means.push_back(mean(group));
   Interval interval;

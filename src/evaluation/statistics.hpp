@@ -25,7 +25,6 @@ double rank_correlation(std::span<const double> x, std::span<const double> y);
 /// A statistic of the groups' means with its percentile bootstrap interval: each group's values are
 /// resampled.
 Interval bootstrap_of_means(const std::vector<std::vector<double>>& groups,
-                            const std::function<double(std::span<const double> means)>& statistic,
-                            std::uint64_t seed);
+                            const std::function<double(std::span<const double> means)>& statistic, std::uint64_t seed);
 
 }  // namespace tubebin

@@ -12,8 +12,7 @@ namespace {
 /// A seed that depends on the group alone, so that other groups in the same results don't change its
 /// interval.
 std::uint64_t seed_of(const GroupKey& key) {
-  std::uint64_t seed =
-      derive_seed({static_cast<std::uint64_t>(key.tubes), std::bit_cast<std::uint64_t>(key.ratio)});
+  std::uint64_t seed = derive_seed({static_cast<std::uint64_t>(key.tubes), std::bit_cast<std::uint64_t>(key.ratio)});
   for (const char c : key.method + '\n' + key.set) seed = derive_seed({seed, static_cast<std::uint64_t>(c)});
   return seed;
 }
@@ -47,8 +46,7 @@ void add_scores(const SegmentationScores& scores, PooledScores& pooled, Sums& su
   pooled.tube_count_bias += scores.predicted_tubes - tubes;
   pooled.tube_count_error += std::abs(scores.predicted_tubes - tubes);
   for (const TubeScore& tube : scores.tubes) add_tube(tube, pooled);
-  for (std::size_t i = 0; i < sums.true_positives.size(); ++i)
-    sums.true_positives[i] += scores.true_positives[i];
+  for (std::size_t i = 0; i < sums.true_positives.size(); ++i) sums.true_positives[i] += scores.true_positives[i];
   sums.true_positive_iou += scores.true_positive_iou;
   // With one tube any point without a segment makes the index 0, however many the segment has.
   if (tubes > 1) {
@@ -66,10 +64,9 @@ double share(double part, int whole) { return whole > 0 ? part / whole : 0.0; }
 
 void divide(PooledScores& pooled, const Sums& sums) {
   for (double* value : {&pooled.recall, &pooled.precision, &pooled.iou}) *value = share(*value, pooled.tubes);
-  for (double* value : {&pooled.tube_count_error, &pooled.tube_count_bias})
-    *value = share(*value, pooled.runs);
-  for (double* value : {&pooled.centerline_model_mean, &pooled.centerline_model_p95,
-                        &pooled.centerline_truth_mean, &pooled.centerline_truth_p95})
+  for (double* value : {&pooled.tube_count_error, &pooled.tube_count_bias}) *value = share(*value, pooled.runs);
+  for (double* value : {&pooled.centerline_model_mean, &pooled.centerline_model_p95, &pooled.centerline_truth_mean,
+                        &pooled.centerline_truth_p95})
     *value = share(*value, pooled.centerlines);
   pooled.adjusted_rand_index = share(sums.rand_index, sums.runs_with_several_tubes);
   pooled.detected = share(sums.hoover.detected, pooled.tubes);
@@ -79,8 +76,7 @@ void divide(PooledScores& pooled, const Sums& sums) {
   pooled.noise = share(sums.hoover.noise, pooled.predicted_tubes);
   pooled.panoptic_quality =
       panoptic_quality(pooled.tubes, pooled.predicted_tubes, sums.true_positives[0], sums.true_positive_iou);
-  pooled.average_precision_50 =
-      average_precision(pooled.tubes, pooled.predicted_tubes, sums.true_positives[0]);
+  pooled.average_precision_50 = average_precision(pooled.tubes, pooled.predicted_tubes, sums.true_positives[0]);
   for (const int true_positives : sums.true_positives)
     pooled.average_precision +=
         average_precision(pooled.tubes, pooled.predicted_tubes, true_positives) / kIouThresholdCount;

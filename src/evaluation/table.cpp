@@ -9,8 +9,7 @@ namespace {
 
 /// Columns on a terminal: characters, not bytes, of a UTF-8 text.
 std::size_t shown_width(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
 std::string padded(const std::string& text, std::size_t width, bool to_the_right) {
@@ -55,9 +54,7 @@ Cell number_cell(double value, int decimals) { return {fmt::format("{:.{}f}", va
 
 std::string count_of_tubes(int count) { return fmt::format("{} tube{}", count, count == 1 ? "" : "s"); }
 
-Cell percent_cell(double share, int decimals) {
-  return {fmt::format("{:.{}f} %", 100.0 * share, decimals), share};
-}
+Cell percent_cell(double share, int decimals) { return {fmt::format("{:.{}f} %", 100.0 * share, decimals), share}; }
 
 Table transpose(const Table& table, std::size_t name_columns) {
   Table result{table.title, {""}, {}, table.note};
@@ -89,8 +86,7 @@ std::string format_text(const Table& table) {
   };
   std::string text = table.title + "\n" + line([&](std::size_t i) { return table.headers[i]; });
   text += line([&](std::size_t i) { return std::string(widths[i], '-'); });
-  for (const auto& row : table.rows)
-    text += line([&](std::size_t i) { return i < row.size() ? row[i].text : ""; });
+  for (const auto& row : table.rows) text += line([&](std::size_t i) { return i < row.size() ? row[i].text : ""; });
   if (!table.note.empty()) text += table.note + "\n";
   return text;
 }
@@ -118,8 +114,7 @@ std::string format_csv(const Table& table) {
   text += "\n";
   for (const auto& row : table.rows) {
     for (std::size_t i = 0; i < row.size(); ++i)
-      text.append(i > 0 ? "," : "")
-          .append(row[i].value ? fmt::format("{}", *row[i].value) : csv_field(row[i].text));
+      text.append(i > 0 ? "," : "").append(row[i].value ? fmt::format("{}", *row[i].value) : csv_field(row[i].text));
     text += "\n";
   }
   return text;

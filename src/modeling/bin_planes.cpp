@@ -11,7 +11,7 @@ namespace {
 constexpr int kTrials = 300;           ///< a wall of a tenth of the points is missed by chance once in e^3, some 20
 constexpr std::size_t kSample = 3000;  ///< points: a plane's share of them is known to 1 %
 
-constexpr double kSlantMax = 0.1;      ///< sine of a wall's slant, as moulded boxes have
+constexpr double kSlantMax = 0.1;  ///< sine of a wall's slant, as moulded boxes have
 
 std::vector<Vec3> sample_points(const ModelingInput& input) {
   std::vector<Vec3> finite;

@@ -93,7 +93,8 @@ Vec3 tangent(const std::vector<Vec3>& curve, std::size_t i) {
 /// Finds each vote's place along the curve.
 void place_along(const std::vector<Vec3>& curve, std::vector<Vote>& votes) {
   std::vector<double> arclength = {0.0};
-  for (std::size_t i = 1; i < curve.size(); ++i) arclength.push_back(arclength.back() + (curve[i] - curve[i - 1]).norm());
+  for (std::size_t i = 1; i < curve.size(); ++i)
+    arclength.push_back(arclength.back() + (curve[i] - curve[i - 1]).norm());
   for (Vote& vote : votes) {
     vote.sample = 0;
     double nearest = std::numeric_limits<double>::infinity();
@@ -170,7 +171,8 @@ std::vector<Vec3> axis_from_normals(const std::vector<Vote>& votes, double radiu
     std::size_t count = 0;
     for (std::size_t i = 0; i < votes.size(); i += stride) {
       const Vec3 offset = votes[i].center - first.center;
-      if (std::abs(votes[i].normal.dot(axis)) < 0.3 && (offset - offset.dot(axis) * axis).norm() < radius / 4.0) ++count;
+      if (std::abs(votes[i].normal.dot(axis)) < 0.3 && (offset - offset.dot(axis) * axis).norm() < radius / 4.0)
+        ++count;
     }
     if (count > best_count) best_count = count, best_axis = axis, best_center = first.center;
   }

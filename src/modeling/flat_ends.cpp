@@ -47,7 +47,8 @@ std::optional<FlatEnd> find_flat_end(const Vec3& tip, const Vec3& outward, const
   Vec3 center = Vec3::Zero();
   for (const Vec3& p : on_plane) center += p / static_cast<double>(on_plane.size());
   for (const Vec3& p : on_plane)
-    if ((p - center).norm() > 1.5 * radius || std::abs((p - center).dot(end.outward)) > 0.3 * radius) return std::nullopt;
+    if ((p - center).norm() > 1.5 * radius || std::abs((p - center).dot(end.outward)) > 0.3 * radius)
+      return std::nullopt;
   end.center = center;
   return end;
 }
@@ -61,7 +62,8 @@ std::vector<std::vector<Vec3>> possible_courses(const std::vector<Vec3>& nodes, 
   for (std::size_t keep = first; keep <= nodes.size(); ++keep) {
     std::vector<Vec3> course(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(keep));
     const Vec3 straight = end.center - course.back();
-    if ((keep == nodes.size() || is_near(keep)) && straight.norm() > radius && straight.normalized().dot(end.outward) > 0.64) {
+    if ((keep == nodes.size() || is_near(keep)) && straight.norm() > radius &&
+        straight.normalized().dot(end.outward) > 0.64) {
       courses.push_back(course);
       courses.back().push_back(end.center);
     }

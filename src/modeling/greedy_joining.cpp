@@ -30,9 +30,7 @@ std::vector<End> find_ends(const std::vector<TubePiece>& pieces) {
   return ends;
 }
 
-double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
+double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 std::vector<Pair> pairs_by_cost(const std::vector<TubePiece>& pieces, const GreedyJoiningOptions& options) {
   const std::vector<End> ends = find_ends(pieces);

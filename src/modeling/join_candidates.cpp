@@ -154,9 +154,9 @@ std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, cons
   return ends;
 }
 
-std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces,
-                                                const std::vector<PieceEnd>& ends, const OcclusionTest& occlusion,
-                                                double bending_rate, double length_limit) {
+std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
+                                                const OcclusionTest& occlusion, double bending_rate,
+                                                double length_limit) {
   std::vector<JoinCandidate> candidates;
   if (pieces.empty()) return candidates;
   const double radius = pieces.front().radius;

@@ -60,9 +60,15 @@ StretchEvidence OcclusionTest::around(const Vec3& center, const Vec3& direction)
       continue;
     }
     switch (image_.evidence(surface.cast<float>(), static_cast<float>(radius_ / 2.0))) {
-      case RangeImage::Evidence::hidden: sum.hidden += 1.0; break;
-      case RangeImage::Evidence::surface: sum.surface += 1.0; break;
-      case RangeImage::Evidence::empty: sum.empty += 1.0; break;
+      case RangeImage::Evidence::hidden:
+        sum.hidden += 1.0;
+        break;
+      case RangeImage::Evidence::surface:
+        sum.surface += 1.0;
+        break;
+      case RangeImage::Evidence::empty:
+        sum.empty += 1.0;
+        break;
     }
   }
   return {sum.hidden / 3.0, sum.surface / 3.0, sum.empty / 3.0};

@@ -118,7 +118,8 @@ class PartSolver {
   void keep_promising() {
     std::vector<std::pair<double, std::uint32_t>> promising;
     for (const std::uint32_t c : open_)
-      if (const double reduced = reduced_cost(c); reduced < best_cost_ - bound_ + 1e-9) promising.emplace_back(reduced, c);
+      if (const double reduced = reduced_cost(c); reduced < best_cost_ - bound_ + 1e-9)
+        promising.emplace_back(reduced, c);
     std::sort(promising.begin(), promising.end());
     for (const auto& [reduced, c] : promising)
       for (const std::uint32_t i : candidates_[c].items) candidates_of_item_[i].push_back(c);
@@ -181,8 +182,7 @@ std::vector<std::uint32_t> cheapest_path_cover(std::size_t item_count, std::span
 
   std::vector<std::uint32_t> cover;
   for (std::size_t part = 0; part < items.size(); ++part) {
-    const auto chosen =
-        PartSolver(candidates, compatible, items[part], open[part], item_count, node_limit).solve();
+    const auto chosen = PartSolver(candidates, compatible, items[part], open[part], item_count, node_limit).solve();
     cover.insert(cover.end(), chosen.begin(), chosen.end());
   }
   std::sort(cover.begin(), cover.end());

@@ -124,8 +124,9 @@ void settle_inliers(const FilteredCloud& cloud, std::vector<Axis>& axes, double 
   for (const std::uint32_t i : all) {
     const Vec3 p = cloud.points[i].cast<double>();
     const auto off = [&](const Axis& axis) { return axis.distance_off(p, radius); };
-    std::min_element(axes.begin(), axes.end(), [&](const Axis& a, const Axis& b) { return off(a) < off(b); })
-        ->inliers.push_back(i);
+    std::min_element(axes.begin(), axes.end(), [&](const Axis& a, const Axis& b) {
+      return off(a) < off(b);
+    })->inliers.push_back(i);
   }
 }
 
@@ -155,9 +156,8 @@ void settle(const FilteredCloud& cloud, std::vector<Axis>& axes, double radius, 
         axes.begin(), axes.end(), [](const Axis& a, const Axis& b) { return a.inliers.size() < b.inliers.size(); });
     const auto is_spared = [&](std::uint32_t i) {
       const Vec3 p = cloud.points[i].cast<double>();
-      return std::any_of(axes.begin(), axes.end(), [&](const Axis& axis) {
-        return &axis != &*fewest && axis.distance_off(p, radius) < band;
-      });
+      return std::any_of(axes.begin(), axes.end(),
+                         [&](const Axis& axis) { return &axis != &*fewest && axis.distance_off(p, radius) < band; });
     };
     const auto spared = std::count_if(fewest->inliers.begin(), fewest->inliers.end(), is_spared);
     if (axes.size() < 2 || 10 * static_cast<std::size_t>(spared) < 7 * fewest->inliers.size()) continue;
@@ -174,7 +174,8 @@ void settle(const FilteredCloud& cloud, std::vector<Axis>& axes, double radius, 
 /// From the first to the last of its points along the axis, a hundredth of them cut off at either end as strays.
 TubePiece make_piece(const FilteredCloud& cloud, const Axis& axis, double radius) {
   std::vector<double> along;
-  for (const std::uint32_t i : axis.inliers) along.push_back((cloud.points[i].cast<double>() - axis.point).dot(axis.direction));
+  for (const std::uint32_t i : axis.inliers)
+    along.push_back((cloud.points[i].cast<double>() - axis.point).dot(axis.direction));
   std::sort(along.begin(), along.end());
   const double low = along[along.size() / 100], high = along[along.size() - 1 - along.size() / 100];
   return {.nodes = {axis.point + low * axis.direction, axis.point + high * axis.direction},

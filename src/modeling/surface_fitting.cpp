@@ -10,10 +10,10 @@ namespace {
 /// Where a point stands relative to the polyline.
 struct Foot {
   std::size_t cylinder = 0;
-  double t = 0.0;          ///< 0 at the cylinder's start, 1 at its end
-  double distance = 0.0;   ///< from the axis, metres
+  double t = 0.0;               ///< 0 at the cylinder's start, 1 at its end
+  double distance = 0.0;        ///< from the axis, metres
   Vec3 outward = Vec3::Zero();  ///< unit, from the axis to the point
-  bool beyond = false;     ///< past the polyline's first or last node
+  bool beyond = false;          ///< past the polyline's first or last node
 };
 
 Foot foot_on_cylinder(const std::vector<Vec3>& nodes, std::size_t k, const Vec3& p) {
@@ -106,8 +106,8 @@ SurfaceFit fit_surface(std::vector<Vec3>& nodes, std::span<const SurfacePoint> p
   double sigma = 0.0;
   for (int i = 0;; ++i) {
     for (std::size_t k = 0; k < points.size(); ++k)
-      feet[k] = i == 0 ? nearest_foot(nodes, points[k].position)
-                       : follow_foot(nodes, points[k].position, feet[k].cylinder);
+      feet[k] =
+          i == 0 ? nearest_foot(nodes, points[k].position) : follow_foot(nodes, points[k].position, feet[k].cylinder);
     sigma = robust_sigma(feet, radius);
     // Tukey's constant for 95 % efficiency; never so narrow that float rounding decides, never wider than half the
     // radius, beyond which a point is not on this surface.
@@ -236,7 +236,8 @@ void grow_end(std::vector<Vec3>& nodes, std::span<const SurfacePoint> points, do
       if (next.supports(point, 0.15 * radius, at)) on_side.push_back(at);
     const Support sure(std::move(on_side), row);
     const bool sharp = forward.dot(direction) < 0.64;  // 50 degrees within a radius: no tube, but another one
-    if (!sharp && !meets_itself(nodes, next.start + sure.reach * forward, radius) && sure.enough(0.15, radius, spacing, row)) {
+    if (!sharp && !meets_itself(nodes, next.start + sure.reach * forward, radius) &&
+        sure.enough(0.15, radius, spacing, row)) {
       nodes.push_back(next.start + sure.reach * forward);
       continue;
     }

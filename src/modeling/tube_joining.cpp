@@ -25,15 +25,15 @@ constexpr std::size_t kPathLimit = 1000;
 
 /// A chain of pieces under construction: enters its last piece at one end and may leave it by the other.
 struct Chain {
-  PathCandidate path;                ///< its items: the pieces in order, then the fragments absorbed
+  PathCandidate path;  ///< its items: the pieces in order, then the fragments absorbed
   std::vector<std::uint32_t> pieces;
   std::vector<std::uint32_t> joins;  ///< candidates used
   std::uint32_t first_end = 0;       ///< where the tube starts
   std::uint32_t last_end = 0;        ///< where it ends so far
   std::uint64_t key = 0;             ///< the items' keys, xor: the same for the same items in any order (Zobrist 1970)
   double join_cost = 0.0;
-  double length = 0.0;               ///< of pieces and bridges, metres
-  double bridged = 0.0;              ///< of bridges alone, metres
+  double length = 0.0;   ///< of pieces and bridges, metres
+  double bridged = 0.0;  ///< of bridges alone, metres
 };
 
 class Joiner {
@@ -101,7 +101,8 @@ class Joiner {
   void set_tube_length(double length) { tube_length_ = length; }
 
   Joining result() const {
-    Joining joining{.tubes = {}, .tube_of_piece = std::vector<std::uint32_t>(pieces_.size()), .tube_length = tube_length_};
+    Joining joining{
+        .tubes = {}, .tube_of_piece = std::vector<std::uint32_t>(pieces_.size()), .tube_length = tube_length_};
     for (const Chain& chain : chains_) {
       if (chain.length < 2.0 * radius_) continue;
       for (const std::uint32_t piece : chain.path.items)
@@ -217,7 +218,8 @@ class Joiner {
   void find_colliding_joins() {
     collides_.assign(joins_.size(), std::vector<bool>(joins_.size(), false));
     for (std::size_t i = 0; i < joins_.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j) collides_[i][j] = collides_[j][i] = bridges_meet(joins_[i].bridge, joins_[j].bridge);
+      for (std::size_t j = 0; j < i; ++j)
+        collides_[i][j] = collides_[j][i] = bridges_meet(joins_[i].bridge, joins_[j].bridge);
   }
 
   /// Less than a radius apart is no matter of the bridges' uncertain course.

@@ -129,7 +129,8 @@ std::pair<std::uint32_t, std::uint32_t> ViewGrid::range(int row, int first_colum
   last_column = std::min(last_column, static_cast<int>(columns_) - 1);
   if (first_column > last_column) return {0, 0};
   const std::size_t base = static_cast<std::size_t>(row) * columns_;
-  return {starts_[base + static_cast<std::size_t>(first_column)], starts_[base + static_cast<std::size_t>(last_column) + 1]};
+  return {starts_[base + static_cast<std::size_t>(first_column)],
+          starts_[base + static_cast<std::size_t>(last_column) + 1]};
 }
 
 double estimate_spacing(const ViewProjection& projection, std::span<const Point> points) {

@@ -156,7 +156,8 @@ void add_edge_touch(const Box& box, const Piece& piece, double depth_min, std::v
   const double t = nearest_parameter(piece.axis, project);
   if (is_flat_end(piece, t)) {
     const SolidCylinder core = piece.solid(kRimRounding);
-    const auto [p, q] = closest_of_convex(project, [&](const Vec3& x) { return core.project(x); }, piece.axis.at(t));
+    const auto [p, q] = closest_of_convex(
+        project, [&](const Vec3& x) { return core.project(x); }, piece.axis.at(t));
     if ((q - p).squaredNorm() < 1e-18) return;  // deeper than the rounding: the rim's touches see it
     if (const auto touch = touch_box_with_ball(box, q, kRimRounding, depth_min)) out.push_back(*touch);
   } else if (t > 0.0 && t < 1.0) {

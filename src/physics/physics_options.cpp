@@ -36,8 +36,7 @@ void describe(Fields& fields, PhysicsOptions& o) {
   fields.number("check_time", o.check_time, {0.0, 100.0}, "s",
                 "how long the simulation runs on to prove that nothing moves");
   fields.number("drift_max", o.drift_max, {0.0, 1.0}, "m", "farthest that a tube's end may move in check_time");
-  fields.number("penetration_max", o.penetration_max, {0.0, 1.0}, "m",
-                "deepest interpenetration of a finished scene");
+  fields.number("penetration_max", o.penetration_max, {0.0, 1.0}, "m", "deepest interpenetration of a finished scene");
   fields.number("time_limit", o.time_limit, {0.001, 10000.0}, "s",
                 "simulated time after which a drop counts as unsettled");
 }
@@ -54,13 +53,20 @@ void check(const PhysicsOptions& options, const KeyPlaces& places, const std::st
 
 const char* to_string(DropFailure failure) {
   switch (failure) {
-    case DropFailure::none: return "none";
-    case DropFailure::spawn: return "spawn";
-    case DropFailure::outside: return "outside";
-    case DropFailure::unsettled: return "unsettled";
-    case DropFailure::penetration: return "penetration";
-    case DropFailure::drift: return "drift";
-    case DropFailure::floating: return "floating";
+    case DropFailure::none:
+      return "none";
+    case DropFailure::spawn:
+      return "spawn";
+    case DropFailure::outside:
+      return "outside";
+    case DropFailure::unsettled:
+      return "unsettled";
+    case DropFailure::penetration:
+      return "penetration";
+    case DropFailure::drift:
+      return "drift";
+    case DropFailure::floating:
+      return "floating";
   }
   return "unknown";
 }

@@ -127,9 +127,7 @@ RigidWorld::~RigidWorld() {
   dWorldDestroy(impl_->world);
 }
 
-void RigidWorld::set_solver_iterations(int iterations) {
-  dWorldSetQuickStepNumIterations(impl_->world, iterations);
-}
+void RigidWorld::set_solver_iterations(int iterations) { dWorldSetQuickStepNumIterations(impl_->world, iterations); }
 
 void RigidWorld::step() {
   impl_->find_contacts();

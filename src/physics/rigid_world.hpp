@@ -11,8 +11,7 @@ namespace tubebin {
 
 class RigidWorld {
  public:
-  RigidWorld(const std::vector<PlacedTube>& tubes, const Bin& bin, const PhysicsOptions& options,
-             std::uint64_t seed);
+  RigidWorld(const std::vector<PlacedTube>& tubes, const Bin& bin, const PhysicsOptions& options, std::uint64_t seed);
   ~RigidWorld();
   RigidWorld(const RigidWorld&) = delete;
   RigidWorld& operator=(const RigidWorld&) = delete;

@@ -28,9 +28,7 @@ std::optional<Quat> fitting_rotation(const Tube& tube, const Bin& bin, double cl
 
 /// How far from the bin's middle a tube may start, as a share of the room between the walls: one that stands taller
 /// than the walls falls over, and from beside a wall it would fall out.
-double steadiness(const Box& bounds, const Bin& bin) {
-  return std::min(1.0, bin.height / bounds.sizes().z());
-}
+double steadiness(const Box& bounds, const Bin& bin) { return std::min(1.0, bin.height / bounds.sizes().z()); }
 
 bool overlaps(const CollisionTube& shape, const std::vector<CollisionTube>& placed, double clearance) {
   std::vector<Touch> touches;

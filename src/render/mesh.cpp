@@ -32,8 +32,7 @@ class MeshBuilder {
     add_patch(fineness_.facets, rings, [&](int facet, int ring) -> Vertex {
       const double longitude = 2.0 * std::numbers::pi * facet / fineness_.facets;
       const double polar = std::numbers::pi * ring / rings;
-      const Vec3 normal(std::sin(polar) * std::cos(longitude), std::sin(polar) * std::sin(longitude),
-                        std::cos(polar));
+      const Vec3 normal(std::sin(polar) * std::cos(longitude), std::sin(polar) * std::sin(longitude), std::cos(polar));
       return vertex(center + radius * normal, normal);
     });
   }
@@ -107,12 +106,10 @@ Mesh tube_mesh(const PlacedTube& placed, const Vec3& origin, const Fineness& fin
   MeshBuilder builder(mesh, origin, fineness);
   const Tube& tube = placed.tube;
   for (const Cylinder& cylinder : tube.cylinders)
-    builder.add_cylinder(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b),
-                         tube.radius);
+    builder.add_cylinder(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b), tube.radius);
   const std::vector<int> degrees = tube.node_degrees();
   for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
-    if (degrees[static_cast<std::size_t>(node)] != 1)
-      builder.add_sphere(placed.node_in_world(node), tube.radius);
+    if (degrees[static_cast<std::size_t>(node)] != 1) builder.add_sphere(placed.node_in_world(node), tube.radius);
   return mesh;
 }
 

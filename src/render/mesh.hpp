@@ -24,9 +24,8 @@ struct Mesh {
 /// How finely surfaces are divided. Flat and straight ones need no division for their shape, but to carry
 /// light.
 struct Fineness {
-  int facets = 64;  ///< around a tube
-  double cell =
-      std::numeric_limits<double>::infinity();  ///< metres, largest step along flat and straight surfaces
+  int facets = 64;                                        ///< around a tube
+  double cell = std::numeric_limits<double>::infinity();  ///< metres, largest step along flat and straight surfaces
 };
 
 /// Cylinders with flat caps and spheres at the joints, around `origin` in world axes.

@@ -12,9 +12,7 @@ namespace tubebin {
 
 bool can_render() { return true; }
 
-Image render_preview(const Scene& scene, int width, int height) {
-  return draw_lit_view(scene, width, height);
-}
+Image render_preview(const Scene& scene, int width, int height) { return draw_lit_view(scene, width, height); }
 
 Image render_labels(const Scene& scene, const PixelWindow& window) {
   if (window.width == 0 || window.height == 0) return {};

@@ -6,8 +6,7 @@
 namespace tubebin {
 namespace {
 
-constexpr Interval kWholeLine = {-std::numeric_limits<double>::infinity(),
-                                 std::numeric_limits<double>::infinity()};
+constexpr Interval kWholeLine = {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 
 Interval common_part(const Interval& a, const Interval& b) {
   return {std::max(a.begin, b.begin), std::min(a.end, b.end)};

@@ -37,9 +37,9 @@ class SolidCylinder {
   double length_;
   double radius_;
   double base_height_;  ///< of the base above the origin, along the axis
-  Vec3 moment_;  ///< axis x base: direction . moment is the ray's distance from the axis, times |direction x
-                 ///< axis|
-  Vec3 foot_;    ///< the axis' point nearest to the origin
+  Vec3 moment_;         ///< axis x base: direction . moment is the ray's distance from the axis, times |direction x
+                        ///< axis|
+  Vec3 foot_;           ///< the axis' point nearest to the origin
 };
 
 class SolidSphere {

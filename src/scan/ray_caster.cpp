@@ -24,8 +24,7 @@ float beyond(double depth) { return static_cast<float>(std::max(depth, 0.0)) * (
 
 /// What Embree hands through to the callbacks of one ray.
 struct RayQuery : embree::QueryContext {
-  RayQuery(const Vec3& ray_direction, double ray_depth_min)
-      : direction(ray_direction), depth_min(ray_depth_min) {
+  RayQuery(const Vec3& ray_direction, double ray_depth_min) : direction(ray_direction), depth_min(ray_depth_min) {
     embree::init_context(*this);
   }
 
@@ -84,8 +83,7 @@ void attach(const embree::Device& device, const embree::Scene& scene, const Soli
 
 void check_device(const embree::Device& device) {
   const RTCError error = rtcGetDeviceError(device.get());
-  if (error != RTC_ERROR_NONE)
-    throw std::runtime_error(fmt::format("Embree failed with error {}", int{error}));
+  if (error != RTC_ERROR_NONE) throw std::runtime_error(fmt::format("Embree failed with error {}", int{error}));
 }
 
 RTCRayHit make_ray(const Vec3& direction, double depth_min, double depth_max) {
@@ -106,8 +104,7 @@ double first_boundary(std::vector<Interval>& parts, double depth_min) {
   double first = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < parts.size();) {
     Interval merged = parts[i++];
-    while (i < parts.size() && parts[i].begin <= merged.end)
-      merged.end = std::max(merged.end, parts[i++].end);
+    while (i < parts.size() && parts[i].begin <= merged.end) merged.end = std::max(merged.end, parts[i++].end);
     if (merged.begin >= depth_min) return std::min(first, merged.begin);
     if (merged.end >= depth_min) first = std::min(first, merged.end);
   }

@@ -8,8 +8,7 @@
 namespace tubebin {
 
 struct Hit {
-  double depth =
-      std::numeric_limits<double>::infinity();  ///< along the optical axis, metres; infinity: nothing
+  double depth = std::numeric_limits<double>::infinity();  ///< along the optical axis, metres; infinity: nothing
   Label label = 0;
 
   bool found() const { return depth < std::numeric_limits<double>::infinity(); }

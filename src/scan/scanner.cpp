@@ -16,8 +16,7 @@ PixelWindow whole_image(const Camera& camera) { return {0, 0, camera.width(), ca
 /// Calls on_hit(column, row, point in world, label) for every pixel of the window that sees a surface, row by
 /// row.
 template <typename OnHit>
-void cast_rays(const RayCaster& caster, const Camera& camera, const PixelWindow& window,
-               const OnHit& on_hit) {
+void cast_rays(const RayCaster& caster, const Camera& camera, const PixelWindow& window, const OnHit& on_hit) {
   const Vec3 scanner_in_world = camera.world_from_scanner().translation();
   for (int row = window.y; row < window.y + window.height; ++row) {
     for (int column = window.x; column < window.x + window.width; ++column) {
@@ -71,8 +70,8 @@ Scan scan(const Scene& scene) {
   const Camera camera(scanner);
   SceneSolids solids = scene_solids(scene);
   const bool tubes_alone = scanner.region == ScanRegion::tubes;
-  const PixelWindow seen = view_window(solids, tubes_alone ? SeenBodies::tubes : SeenBodies::bin_and_tubes,
-                                       camera, scanner.range_min);
+  const PixelWindow seen =
+      view_window(solids, tubes_alone ? SeenBodies::tubes : SeenBodies::bin_and_tubes, camera, scanner.range_min);
   const RayCaster caster(std::move(solids), scanner.range_min, scanner.range_max);
   const std::vector<Color> colors = label_colors(scene.tubes.size());
 
@@ -80,10 +79,8 @@ Scan scan(const Scene& scene) {
   scan.window = scanner.region == ScanRegion::full ? whole_image(camera) : seen;
   scan.tube_pixels.assign(scene.tubes.size(), 0);
   scan.cloud.world_from_sensor = camera.world_from_scanner();
-  if (tubes_alone)
-    scan_tubes(caster, camera, colors, scan);
-  else
-    scan_organized(caster, camera, seen, colors, scan);
+  if (tubes_alone) scan_tubes(caster, camera, colors, scan);
+  else scan_organized(caster, camera, seen, colors, scan);
   return scan;
 }
 

@@ -91,8 +91,7 @@ class ViewBounds {
   bool add_disc(const Vec3& center_seen, const Vec3& normal_seen, double radius) {
     const Vec3 center = scanner_from_seen_ * center_seen;
     const Vec3 normal = scanner_from_seen_ * normal_seen;
-    if (center.z() - radius * std::sqrt(std::max(0.0, 1.0 - normal.z() * normal.z())) < depth_min_)
-      return false;
+    if (center.z() - radius * std::sqrt(std::max(0.0, 1.0 - normal.z() * normal.z())) < depth_min_) return false;
     const auto [left, right] = slopes(center, normal, radius, 0);
     const auto [above, below] = slopes(center, normal, radius, 1);
     add_point({left, above, 1.0});
@@ -119,8 +118,7 @@ class ViewBounds {
 
 }  // namespace
 
-PixelWindow view_window(const SceneSolids& solids, SeenBodies bodies, const Camera& camera,
-                        double depth_min) {
+PixelWindow view_window(const SceneSolids& solids, SeenBodies bodies, const Camera& camera, double depth_min) {
   ViewBounds bounds(camera, depth_min);
   for (const auto& cylinder : solids.cylinders) bounds.add_cylinder(cylinder.solid);
   for (const auto& sphere : solids.spheres) bounds.add_sphere(sphere.solid);

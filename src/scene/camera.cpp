@@ -12,8 +12,8 @@ Camera::Camera(const Scanner& scanner)
 
 Vec3 Camera::direction_in_world(double x, double y) const {
   const auto axes = world_from_scanner_.linear();
-  return axes.col(0) * ((x - width_ / 2.0) / focal_length_) +
-         axes.col(1) * ((y - height_ / 2.0) / focal_length_) + axes.col(2);
+  return axes.col(0) * ((x - width_ / 2.0) / focal_length_) + axes.col(1) * ((y - height_ / 2.0) / focal_length_) +
+         axes.col(2);
 }
 
 Eigen::Vector2d Camera::project(const Vec3& p_in_scanner) const {

@@ -74,8 +74,7 @@ void JsonPlace::fail(const std::string& valid) const {
   constexpr std::size_t kShown = 60;
   std::string shown = value_.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
   if (shown.size() > kShown) shown = shown.substr(0, kShown - 3) + "...";
-  throw_io_error("{}: {}: {} is not valid; valid: {}", file_, pointer_.empty() ? "/" : pointer_, shown,
-                 valid);
+  throw_io_error("{}: {}: {} is not valid; valid: {}", file_, pointer_.empty() ? "/" : pointer_, shown, valid);
 }
 
 JsonPlace JsonPlace::at(const char* key) const {
@@ -158,8 +157,7 @@ void JsonPlace::fields(const std::function<void(Fields&)>& describe) const {
 }
 
 void JsonPlace::expect_near(double expected, double tolerance) const {
-  if (!(std::abs(number() - expected) <= tolerance))
-    fail(fmt::format("{}, as it follows from the rest", expected));
+  if (!(std::abs(number() - expected) <= tolerance)) fail(fmt::format("{}, as it follows from the rest", expected));
 }
 
 }  // namespace tubebin

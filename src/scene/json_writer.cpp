@@ -8,16 +8,12 @@ namespace {
 
 class JsonFields : public Fields {
  public:
-  void number(const char* key, double& value, Limits, const char*, const char*) override {
-    put(key, to_json(value));
-  }
+  void number(const char* key, double& value, Limits, const char*, const char*) override { put(key, to_json(value)); }
   void integer(const char* key, int& value, Limits, const char*, const char*) override { put(key, value); }
   void seed(const char* key, std::uint64_t& value, const char*) override { put(key, value); }
   void flag(const char* key, bool& value, const char*) override { put(key, value); }
   void text(const char* key, std::string& value, const char*) override { put(key, value); }
-  void vector(const char* key, Vec3& value, Limits, const char*, const char*) override {
-    put(key, to_json(value));
-  }
+  void vector(const char* key, Vec3& value, Limits, const char*, const char*) override { put(key, to_json(value)); }
   void integers(const char* key, std::vector<int>& value, Limits, const char*) override { put(key, value); }
   void choice(const char* key, int& value, const std::vector<std::string>& names, const char*) override {
     put(key, names.at(static_cast<std::size_t>(value)));
@@ -47,10 +43,9 @@ OrderedJson to_json(const Pose& pose) {
   const Quat q(pose.linear());
   OrderedJson rows = OrderedJson::array();
   for (int row = 0; row < 3; ++row) rows.push_back(to_json(Vec3(pose.linear().row(row))));
-  return {
-      {"position", to_json(Vec3(pose.translation()))},
-      {"quaternion", OrderedJson::array({to_json(q.w()), to_json(q.x()), to_json(q.y()), to_json(q.z())})},
-      {"rotation", std::move(rows)}};
+  return {{"position", to_json(Vec3(pose.translation()))},
+          {"quaternion", OrderedJson::array({to_json(q.w()), to_json(q.x()), to_json(q.y()), to_json(q.z())})},
+          {"rotation", std::move(rows)}};
 }
 
 OrderedJson fields_to_json(const std::function<void(Fields&)>& describe) {

@@ -9,8 +9,7 @@ std::vector<Box> bin_boxes(const Bin& bin) {
   return {Box(Vec3(-x - wall, -y - wall, -wall), Vec3(x + wall, y + wall, 0.0)),
           Box(Vec3(-x - wall, -y - wall, 0.0), Vec3(-x, y + wall, bin.height)),
           Box(Vec3(x, -y - wall, 0.0), Vec3(x + wall, y + wall, bin.height)),
-          Box(Vec3(-x, -y - wall, 0.0), Vec3(x, -y, bin.height)),
-          Box(Vec3(-x, y, 0.0), Vec3(x, y + wall, bin.height))};
+          Box(Vec3(-x, -y - wall, 0.0), Vec3(x, -y, bin.height)), Box(Vec3(-x, y, 0.0), Vec3(x, y + wall, bin.height))};
 }
 
 Pose Scanner::world_from_scanner() const {

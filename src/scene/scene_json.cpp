@@ -41,18 +41,15 @@ OrderedJson scanner_to_json(Scanner scanner, const PixelWindow& window) {
   return json;
 }
 
-OrderedJson tube_to_json(const PlacedTube& placed, std::size_t label, Color color,
-                         std::size_t visible_pixels) {
+OrderedJson tube_to_json(const PlacedTube& placed, std::size_t label, Color color, std::size_t visible_pixels) {
   const Tube& tube = placed.tube;
-  OrderedJson nodes = OrderedJson::array(), nodes_in_world = OrderedJson::array(),
-              cylinders = OrderedJson::array();
+  OrderedJson nodes = OrderedJson::array(), nodes_in_world = OrderedJson::array(), cylinders = OrderedJson::array();
   for (int i = 0; i < static_cast<int>(tube.nodes.size()); ++i) {
     nodes.push_back(to_json(tube.nodes[static_cast<std::size_t>(i)]));
     nodes_in_world.push_back(to_json(placed.node_in_world(i)));
   }
   for (const Cylinder& cylinder : tube.cylinders)
-    cylinders.push_back(
-        {{"node_a", cylinder.node_a}, {"node_b", cylinder.node_b}, {"order", cylinder.order}});
+    cylinders.push_back({{"node_a", cylinder.node_a}, {"node_b", cylinder.node_b}, {"order", cylinder.order}});
   return {{"id", label},
           {"label", label},
           {"color", color_to_json(color)},
@@ -80,8 +77,7 @@ OrderedJson contact_to_json(const Contact& contact) {
 
 Color read_color(const JsonPlace& place) {
   Color color = 0;
-  for (const JsonPlace& channel : place.elements(3))
-    color = color << 8 | static_cast<Color>(channel.whole(0, 255));
+  for (const JsonPlace& channel : place.elements(3)) color = color << 8 | static_cast<Color>(channel.whole(0, 255));
   return color;
 }
 
@@ -109,9 +105,7 @@ Scanner read_scanner(const JsonPlace& place) {
 }
 
 PixelWindow read_window(const JsonPlace& place, const Scanner& scanner) {
-  const auto read = [&](const char* key, int max) {
-    return place.at(key).integer({0.0, static_cast<double>(max)});
-  };
+  const auto read = [&](const char* key, int max) { return place.at(key).integer({0.0, static_cast<double>(max)}); };
   PixelWindow window;
   window.x = read("x", scanner.width);
   window.y = read("y", scanner.height);
@@ -125,8 +119,7 @@ std::vector<Cylinder> read_cylinders(const JsonPlace& place, const Tube& tube) {
   std::vector<Cylinder> cylinders;
   for (const JsonPlace& element : place.elements()) {
     const Cylinder cylinder = {element.at("node_a").integer({0.0, last_node}),
-                               element.at("node_b").integer({0.0, last_node}),
-                               element.at("order").integer({0.0})};
+                               element.at("node_b").integer({0.0, last_node}), element.at("order").integer({0.0})};
     if (!(tube.length(cylinder) > 0.0)) element.fail("a cylinder between nodes at different places");
     cylinders.push_back(cylinder);
   }
@@ -163,8 +156,7 @@ PlacedTube read_tube(const JsonPlace& place, std::size_t label) {
 
 std::size_t read_visible_pixels(const JsonPlace& place) {
   const std::size_t pixels = place.at("visible_pixels").whole(0, std::numeric_limits<std::uint32_t>::max());
-  if (place.at("visible").flag() != (pixels > 0))
-    place.at("visible").fail("whether visible_pixels is above 0");
+  if (place.at("visible").flag() != (pixels > 0)) place.at("visible").fail("whether visible_pixels is above 0");
   return pixels;
 }
 
@@ -182,29 +174,26 @@ Contact read_contact(const JsonPlace& place, std::size_t tube_count) {
 void check_consistent(const SceneRecord& record) {
   const std::size_t tubes = record.scene.tubes.size();
   if (record.colors.size() != tubes + 1 || record.tube_pixels.size() != tubes)
-    throw std::invalid_argument(fmt::format("scene {} of {} tubes with {} colours and {} pixel counts",
-                                            record.id, tubes, record.colors.size(),
-                                            record.tube_pixels.size()));
+    throw std::invalid_argument(fmt::format("scene {} of {} tubes with {} colours and {} pixel counts", record.id,
+                                            tubes, record.colors.size(), record.tube_pixels.size()));
 }
 
 }  // namespace
 
 std::string format_scene_json(const SceneRecord& record) {
   check_consistent(record);
-  OrderedJson json = {
-      {"format", kFormat},
-      {"format_version", kFormatVersion},
-      {"tool_version", TUBEBIN_VERSION},
-      {"units", {{"length", "m"}, {"mass", "kg"}, {"angle_deg", "degree"}, {"image", "pixel"}}},
-      {"id", record.id},
-      {"seed", record.seed},
-      {"bin", bin_to_json(record.scene.bin, record.colors[0])},
-      {"scanner", scanner_to_json(record.scene.scanner, record.window)},
-      {"tubes", OrderedJson::array()},
-      {"contacts", OrderedJson::array()}};
+  OrderedJson json = {{"format", kFormat},
+                      {"format_version", kFormatVersion},
+                      {"tool_version", TUBEBIN_VERSION},
+                      {"units", {{"length", "m"}, {"mass", "kg"}, {"angle_deg", "degree"}, {"image", "pixel"}}},
+                      {"id", record.id},
+                      {"seed", record.seed},
+                      {"bin", bin_to_json(record.scene.bin, record.colors[0])},
+                      {"scanner", scanner_to_json(record.scene.scanner, record.window)},
+                      {"tubes", OrderedJson::array()},
+                      {"contacts", OrderedJson::array()}};
   for (std::size_t k = 0; k < record.scene.tubes.size(); ++k)
-    json["tubes"].push_back(
-        tube_to_json(record.scene.tubes[k], k + 1, record.colors[k + 1], record.tube_pixels[k]));
+    json["tubes"].push_back(tube_to_json(record.scene.tubes[k], k + 1, record.colors[k + 1], record.tube_pixels[k]));
   for (const Contact& contact : record.contacts) json["contacts"].push_back(contact_to_json(contact));
   return format_json(json);
 }

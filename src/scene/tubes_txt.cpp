@@ -47,8 +47,7 @@ class Parser {
     const std::optional<std::string_view> line = lines_.next();
     if (!line) throw_io_error("{}: the file is empty; expected the number of tubes", name_);
     const std::vector<std::string_view> words = words_of(*line);
-    const std::optional<std::uint32_t> count =
-        words.size() == 1 ? to_number<std::uint32_t>(words[0]) : std::nullopt;
+    const std::optional<std::uint32_t> count = words.size() == 1 ? to_number<std::uint32_t>(words[0]) : std::nullopt;
     if (!count) fail("'{}' is not the number of tubes", excerpt(*line));
     return *count;
   }
@@ -75,15 +74,14 @@ class Parser {
   }
 
   Vec3 read_point(const std::vector<std::string_view>& words, std::size_t first, const char* what) const {
-    return {read_number(words[first], what), read_number(words[first + 1], what),
-            read_number(words[first + 2], what)};
+    return {read_number(words[first], what), read_number(words[first + 1], what), read_number(words[first + 2], what)};
   }
 
   Tube read_tube(std::uint32_t number, std::uint32_t count) {
     const std::optional<std::string_view> line = lines_.next();
     if (!line || words_of(*line).empty())
-      throw_io_error("{}: truncated after line {}: the first line says {} tubes, but there are only {}",
-                     name_, lines_.number(), count, number - 1);
+      throw_io_error("{}: truncated after line {}: the first line says {} tubes, but there are only {}", name_,
+                     lines_.number(), count, number - 1);
     const std::vector<std::string_view> words = words_of(*line);
     if (words.size() != 3) fail("found {} values, expected {}", words.size(), kTubeLine);
     if (!tube_ids_.insert(words[0]).second) fail("the tube id {} stands twice", excerpt(words[0]));
@@ -131,8 +129,7 @@ class Parser {
 
   int find_node(std::string_view id) const {
     const auto found = node_index_.find(id);
-    if (found == node_index_.end())
-      fail("the edge names a node '{}' that this tube does not have", excerpt(id));
+    if (found == node_index_.end()) fail("the edge names a node '{}' that this tube does not have", excerpt(id));
     return found->second;
   }
 
@@ -143,24 +140,21 @@ class Parser {
     const double distance = (b - a).norm();
     if (!(distance > kDistanceTolerance)) fail("the edge's two nodes are at the same place");
     const double center_error = ((a + b) / 2.0 - center).lpNorm<Eigen::Infinity>();
-    if (!(center_error <= kDistanceTolerance))
-      fail("the centre is {:.2e} m off the middle of its nodes", center_error);
+    if (!(center_error <= kDistanceTolerance)) fail("the centre is {:.2e} m off the middle of its nodes", center_error);
     if (!(std::abs(length - distance) <= kDistanceTolerance))
       fail("length {} is not the distance of its nodes, {:.6f} m", length, distance);
     // Third column of the rotation matrix, written out so that a quaternion that is no unit one shows up.
     const double w = rotation.w(), x = rotation.x(), y = rotation.y(), z = rotation.z();
     const Vec3 axis(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y));
     const double axis_error = (axis - (b - a) / distance).lpNorm<Eigen::Infinity>();
-    if (!(axis_error <= kAxisTolerance))
-      fail("the axis is {:.2e} off the direction between its nodes", axis_error);
+    if (!(axis_error <= kAxisTolerance)) fail("the axis is {:.2e} off the direction between its nodes", axis_error);
   }
 
   void check_every_node_is_used(const Tube& tube) const {
     if (tube.nodes.size() == 1) return;  // a sphere
     const std::vector<int> degrees = tube.node_degrees();
     for (const auto& [id, index] : node_index_)
-      if (degrees[static_cast<std::size_t>(index)] == 0)
-        fail("no edge of this tube uses its node {}", excerpt(id));
+      if (degrees[static_cast<std::size_t>(index)] == 0) fail("no edge of this tube uses its node {}", excerpt(id));
   }
 
   LineScanner lines_;
@@ -175,9 +169,7 @@ std::vector<PlacedTube> parse_tubes_txt(std::string_view text, const std::string
   return Parser(text, name).parse();
 }
 
-std::vector<PlacedTube> read_tubes_txt(const std::string& path) {
-  return parse_tubes_txt(read_file(path), path);
-}
+std::vector<PlacedTube> read_tubes_txt(const std::string& path) { return parse_tubes_txt(read_file(path), path); }
 
 std::string format_tubes_txt(const std::vector<PlacedTube>& tubes) {
   std::string text = fmt::format("{}\n", tubes.size());
@@ -195,9 +187,8 @@ std::string format_tubes_txt(const std::vector<PlacedTube>& tubes) {
       const Vec3 c = (a + b) / 2.0;
       const Quat q = Quat::FromTwoVectors(Vec3::UnitZ(), b - a);
       const int id_a = cylinder.node_a + 1, id_b = cylinder.node_b + 1;
-      fmt::format_to(out, "e_{}_{} {} {} {} {} {} {} {} {} {} {} {} {}\n", id_a, id_b, id_a, id_b,
-                     cylinder.order + 1, tube.radius, c.x(), c.y(), c.z(), q.w(), q.x(), q.y(), q.z(),
-                     (b - a).norm());
+      fmt::format_to(out, "e_{}_{} {} {} {} {} {} {} {} {} {} {} {} {}\n", id_a, id_b, id_a, id_b, cylinder.order + 1,
+                     tube.radius, c.x(), c.y(), c.z(), q.w(), q.x(), q.y(), q.z(), (b - a).norm());
     }
   }
   return text;

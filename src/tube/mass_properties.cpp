@@ -99,8 +99,7 @@ void add_lone_spheres(const Tube& tube, double radius, Moments& moments) {
     const Vec3& center = tube.nodes[i];
     moments.volume += volume;
     moments.first += volume * center;
-    moments.second += volume * (center * center.transpose() +
-                                Eigen::Matrix3d::Identity() * (radius * radius / 5.0));
+    moments.second += volume * (center * center.transpose() + Eigen::Matrix3d::Identity() * (radius * radius / 5.0));
   }
 }
 

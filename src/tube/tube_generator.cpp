@@ -38,10 +38,8 @@ void describe(Fields& fields, TubeOptions& options) {
   fields.number("length", options.length, {0.001, 100.0}, "m", "length l, the sum of a tube's cylinders");
   fields.number("cylinder_length_min", options.cylinder_length_min, {0.0001, 100.0}, "m",
                 "shortest cylinder cl_min; longer ones make fewer, straighter stretches");
-  fields.integer("cylinder_count_min", options.cylinder_count_min, {1, 10000}, "",
-                 "fewest cylinders cn_min in a tube");
-  fields.integer("cylinder_count_max", options.cylinder_count_max, {1, 10000}, "",
-                 "most cylinders cn_max in a tube");
+  fields.integer("cylinder_count_min", options.cylinder_count_min, {1, 10000}, "", "fewest cylinders cn_min in a tube");
+  fields.integer("cylinder_count_max", options.cylinder_count_max, {1, 10000}, "", "most cylinders cn_max in a tube");
   fields.number("bend_angle_min_deg", options.bend_angle_min_deg, {0.0, 180.0}, "degrees",
                 "smallest bend theta_min between consecutive cylinders");
   fields.number("bend_angle_max_deg", options.bend_angle_max_deg, {0.0, 180.0}, "degrees",
@@ -81,8 +79,8 @@ std::vector<double> generate_lengths(int count, double length, double cylinder_l
   return lengths;
 }
 
-std::vector<Vec3> generate_endpoints(const std::vector<double>& lengths, double bend_angle_min,
-                                     double bend_angle_max, Random& random) {
+std::vector<Vec3> generate_endpoints(const std::vector<double>& lengths, double bend_angle_min, double bend_angle_max,
+                                     Random& random) {
   std::vector<Vec3> endpoints = {Vec3::Zero()};
   Vec3 previous_direction = Vec3::UnitZ();
   for (std::size_t i = 0; i < lengths.size(); ++i) {
@@ -102,9 +100,9 @@ std::vector<Tube> generate_tubes(int count, const TubeOptions& options, Random& 
     const int cylinder_count = random.integer(options.cylinder_count_min, options.cylinder_count_max);
     const std::vector<double> lengths =
         generate_lengths(cylinder_count, options.length, options.cylinder_length_min, random);
-    tubes.push_back(make_chain(generate_endpoints(lengths, radians(options.bend_angle_min_deg),
-                                                  radians(options.bend_angle_max_deg), random),
-                               options));
+    tubes.push_back(make_chain(
+        generate_endpoints(lengths, radians(options.bend_angle_min_deg), radians(options.bend_angle_max_deg), random),
+        options));
   }
   return tubes;
 }

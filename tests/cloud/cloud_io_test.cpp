@@ -16,8 +16,8 @@
 namespace tubebin {
 namespace {
 
-constexpr CloudFormat kFormats[] = {CloudFormat::pcd_binary, CloudFormat::pcd_compressed,
-                                    CloudFormat::pcd_ascii, CloudFormat::ply_binary};
+constexpr CloudFormat kFormats[] = {CloudFormat::pcd_binary, CloudFormat::pcd_compressed, CloudFormat::pcd_ascii,
+                                    CloudFormat::ply_binary};
 
 struct Contents {
   bool organized = true;
@@ -36,8 +36,7 @@ Cloud make_cloud(std::uint32_t width, std::uint32_t height, Contents contents = 
     const bool hit = i % 7 != 3;
     const auto draw = [&] { return static_cast<float>(random.uniform(-1.0, 1.0)); };
     cloud.points.push_back(hit ? Point(draw(), draw(), draw()) : Point(nan, nan, nan));
-    if (contents.colors)
-      cloud.colors.push_back(hit ? static_cast<Color>(random.integer(1, 0xFFFFFF)) : kNullColor);
+    if (contents.colors) cloud.colors.push_back(hit ? static_cast<Color>(random.integer(1, 0xFFFFFF)) : kNullColor);
     if (contents.labels) cloud.labels.push_back(hit ? static_cast<Label>(random.integer(0, 300)) : 0);
   }
   cloud.world_from_sensor = make_pose(random.rotation(), Vec3(0.25, -0.5, 2.0));
@@ -50,26 +49,19 @@ void expect_same(const Cloud& actual, const Cloud& expected, double pose_toleran
   ASSERT_EQ(actual.size(), expected.size());
   EXPECT_EQ(actual.colors, expected.colors);
   EXPECT_EQ(actual.labels, expected.labels);
-  EXPECT_TRUE(
-      actual.world_from_sensor.matrix().isApprox(expected.world_from_sensor.matrix(), pose_tolerance));
+  EXPECT_TRUE(actual.world_from_sensor.matrix().isApprox(expected.world_from_sensor.matrix(), pose_tolerance));
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    if (is_finite(expected.points[i]))
-      ASSERT_EQ(actual.points[i], expected.points[i]) << i;
-    else
-      ASSERT_FALSE(is_finite(actual.points[i])) << i;
+    if (is_finite(expected.points[i])) ASSERT_EQ(actual.points[i], expected.points[i]) << i;
+    else ASSERT_FALSE(is_finite(actual.points[i])) << i;
   }
 }
 
-std::string temporary_path(const std::string& name) {
-  return ::testing::TempDir() + "tubebin_cloud_io_" + name;
-}
+std::string temporary_path(const std::string& name) { return ::testing::TempDir() + "tubebin_cloud_io_" + name; }
 
 TEST(CloudIo, EveryFormatReadsBackTheSame) {
   for (const CloudFormat format : kFormats)
-    for (const Contents contents :
-         {Contents{}, {false, true, true}, {true, false, true}, {false, false, false}}) {
-      SCOPED_TRACE(testing::Message()
-                   << "format " << static_cast<int>(format) << " colors " << contents.colors);
+    for (const Contents contents : {Contents{}, {false, true, true}, {true, false, true}, {false, false, false}}) {
+      SCOPED_TRACE(testing::Message() << "format " << static_cast<int>(format) << " colors " << contents.colors);
       const Cloud cloud = make_cloud(40, 30, contents);
       const std::string path = temporary_path("round_trip") + extension(format);
       write_cloud(path, cloud, format);
@@ -141,16 +133,15 @@ TEST(CloudIo, PclReadsWhatWeWrite) {
     SCOPED_TRACE(static_cast<int>(format));
     const std::string path = temporary_path("for_pcl") + extension(format);
     write_cloud(path, cloud, format);
-    const PclCloud theirs = format == CloudFormat::ply_binary ? read_with_pcl<pcl::PLYReader>(path)
-                                                              : read_with_pcl<pcl::PCDReader>(path);
+    const PclCloud theirs =
+        format == CloudFormat::ply_binary ? read_with_pcl<pcl::PLYReader>(path) : read_with_pcl<pcl::PCDReader>(path);
     std::filesystem::remove(path);
     ASSERT_EQ(theirs.points.width, cloud.width);
     ASSERT_EQ(theirs.points.height, cloud.height);
-    if (format !=
-        CloudFormat::ply_binary) {  // PCL 1.13 does not hand on the pose, of its own PLY files neither
+    if (format != CloudFormat::ply_binary) {  // PCL 1.13 does not hand on the pose, of its own PLY files neither
       EXPECT_TRUE(theirs.origin.head<3>().isApprox(cloud.world_from_sensor.translation().cast<float>()));
-      EXPECT_TRUE(theirs.orientation.toRotationMatrix().isApprox(
-          cloud.world_from_sensor.linear().cast<float>(), 1e-5F));
+      EXPECT_TRUE(
+          theirs.orientation.toRotationMatrix().isApprox(cloud.world_from_sensor.linear().cast<float>(), 1e-5F));
     }
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const auto& point = theirs.points[i];
@@ -231,8 +222,7 @@ TEST(CloudIo, ReadsOtherTypesOrdersAndExtraFields) {
   EXPECT_EQ(cloud.points, (std::vector<Point>{{1, 2, 3}, {10, 11, 12}}));
   EXPECT_EQ(cloud.labels, (std::vector<Label>{5, 0}));
   EXPECT_EQ(cloud.colors, (std::vector<Color>{0x804020, 0xFFFFFF}));
-  EXPECT_TRUE(
-      cloud.world_from_sensor.linear().isApprox(Eigen::Vector3d(1, -1, -1).asDiagonal().toDenseMatrix()));
+  EXPECT_TRUE(cloud.world_from_sensor.linear().isApprox(Eigen::Vector3d(1, -1, -1).asDiagonal().toDenseMatrix()));
 }
 
 TEST(CloudIo, ReadsTextWithFloatColorsWindowsLinesAndNoPoints) {

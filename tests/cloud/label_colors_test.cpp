@@ -44,8 +44,7 @@ TEST(LabelColors, TheBinIsGreyAndALabelKeepsItsColorInEveryScene) {
   EXPECT_EQ(many[0] >> 16, many[0] & 0xFF);
   EXPECT_EQ(many[0] >> 8 & 0xFF, many[0] & 0xFF);
   for (std::size_t count = 0; count < 50; ++count)
-    EXPECT_EQ(label_colors(count),
-              std::vector<Color>(many.begin(), many.begin() + static_cast<long>(count) + 1));
+    EXPECT_EQ(label_colors(count), std::vector<Color>(many.begin(), many.begin() + static_cast<long>(count) + 1));
 }
 
 TEST(LabelColors, AreWellApartUpToTwentyTubes) {

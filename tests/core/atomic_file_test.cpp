@@ -22,9 +22,7 @@ class AtomicFile : public ::testing::Test {
   ~AtomicFile() override { fs::remove_all(folder_); }
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::ptrdiff_t entries() const {
-    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
-  }
+  std::ptrdiff_t entries() const { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator()); }
 
   const fs::path folder_ =
       fs::path(::testing::TempDir()) / ::testing::UnitTest::GetInstance()->current_test_info()->name();
@@ -66,8 +64,7 @@ TEST_F(AtomicFile, AFullDiskLeavesTheOldFileAndNoTemporary) {
 }
 
 TEST_F(AtomicFile, ErrorsNamePathAndCause) {
-  EXPECT_EQ(error_of([&] { read_file(path("none")); }),
-            path("none") + ": cannot be read: No such file or directory");
+  EXPECT_EQ(error_of([&] { read_file(path("none")); }), path("none") + ": cannot be read: No such file or directory");
   EXPECT_EQ(error_of([&] { read_file(path("")); }), path("") + ": cannot be read: is a folder");
   EXPECT_EQ(error_of([&] { write_file_atomically(path("no/a"), "x"); }),
             path("no/a") + ": cannot be written: No such file or directory");

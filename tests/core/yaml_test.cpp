@@ -69,8 +69,7 @@ TEST(Yaml, WritesWhatReadsBackTheSame) {
 }
 
 TEST(Yaml, ErrorsNamePlaceKeyValueAndWhatIsValid) {
-  EXPECT_EQ(error_of("tube:\n  radius: 3"),
-            "test.yaml:2:11: tube.radius: '3' is not valid; valid: 0.1 to 1 m");
+  EXPECT_EQ(error_of("tube:\n  radius: 3"), "test.yaml:2:11: tube.radius: '3' is not valid; valid: 0.1 to 1 m");
   EXPECT_THAT(error_of("tube: {radius: .nan}"), HasSubstr("test.yaml:1:16: tube.radius: '.nan' is not valid"));
   EXPECT_THAT(error_of("tube: {radius: thick}"), HasSubstr("'thick' is not valid; valid: 0.1 to 1 m"));
   EXPECT_THAT(error_of("tube: {radius: }"), HasSubstr("'nothing' is not valid"));
@@ -83,7 +82,7 @@ TEST(Yaml, ErrorsNamePlaceKeyValueAndWhatIsValid) {
 
 TEST(Yaml, SuggestsTheKeyThatWasMeant) {
   EXPECT_THAT(error_of("tube:\n  radios: 0.2"), HasSubstr("test.yaml:2:3: tube.radios: unknown key, did you mean "
-                                                         "'radius'?; valid here: count, radius"));
+                                                          "'radius'?; valid here: count, radius"));
   EXPECT_THAT(error_of("zzzzzzzz: 1"), ::testing::Not(HasSubstr("did you mean")));
 }
 

@@ -47,7 +47,8 @@ TEST(DatasetConfig, SuggestsTheKeyThatWasMeant) {
 }
 
 TEST(DatasetConfig, NamesPlaceKeyValueAndWhatIsValid) {
-  EXPECT_THAT(refusal_of("tube:\n  radius: thick\n"), AllOf(StartsWith("c.yaml:2:11: tube.radius: 'thick'"), HasSubstr("0.0005")));
+  EXPECT_THAT(refusal_of("tube:\n  radius: thick\n"),
+              AllOf(StartsWith("c.yaml:2:11: tube.radius: 'thick'"), HasSubstr("0.0005")));
   EXPECT_THAT(refusal_of("tube: {radius: .nan}\n"), StartsWith("c.yaml:1:16: tube.radius: '.nan'"));
   EXPECT_THAT(refusal_of("tube: {radius: .inf}\n"), StartsWith("c.yaml:1:16: tube.radius: '.inf'"));
   EXPECT_THAT(refusal_of("tube: {radius: -1}\n"), StartsWith("c.yaml:1:16: tube.radius: '-1'"));

@@ -119,12 +119,12 @@ TEST_F(GenerateDataset, RefusesWrongUsage) {
   EXPECT_EQ(run_generate_dataset({}).exit_code, 2);
   EXPECT_EQ(run_generate_dataset({config_}).exit_code, 2);
   for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{{"--tubes", "1-x"},
-                                                                                    {"--cases", "0"},
-                                                                                    {"--shard", "0/2"},
-                                                                                    {"--jobs", "0"},
-                                                                                    {"--seed", "-1"},
-                                                                                    {"--repair"},
-                                                                                    {"--no-such-option"}}) {
+                                                                                     {"--cases", "0"},
+                                                                                     {"--shard", "0/2"},
+                                                                                     {"--jobs", "0"},
+                                                                                     {"--seed", "-1"},
+                                                                                     {"--repair"},
+                                                                                     {"--no-such-option"}}) {
     EXPECT_EQ(generate(data_, wrong).exit_code, 2) << wrong[0];
     EXPECT_FALSE(fs::exists(data_)) << wrong[0];
   }
@@ -136,7 +136,8 @@ TEST_F(GenerateDataset, NamesScenesThatCannotBeDone) {
   write_text(config_, quick_config() + "attempts_max: 2\nphysics: {drift_max: 0.0, time_limit: 3.0}\n");
   const ProgramResult result = generate(data_, {"--tubes", "3", "--cases", "2"});
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_THAT(result.error, AllOf(HasSubstr("Q3/001: given up after 2 attempts"), HasSubstr("Q3/002: given up after 2 attempts")));
+  EXPECT_THAT(result.error,
+              AllOf(HasSubstr("Q3/001: given up after 2 attempts"), HasSubstr("Q3/002: given up after 2 attempts")));
   EXPECT_TRUE(scene_files(data_).empty());
 }
 

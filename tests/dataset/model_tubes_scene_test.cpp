@@ -10,8 +10,8 @@
 namespace tubebin::testing {
 namespace {
 
-using ::testing::HasSubstr;
 using nlohmann::json;
+using ::testing::HasSubstr;
 
 const std::string kScene = TUBEBIN_SOURCE_DIR "/data/A10/003";
 
@@ -50,7 +50,8 @@ TEST_F(ModelTubes, WritesBothCloudsAndTheModelOfOne) {
   const Cloud input = read_cloud(kScene + "/cloud.pcd");
   std::map<std::tuple<float, float, float>, Color> color_at;
   for (std::size_t i = 0; i < input.size(); ++i)
-    if (is_finite(input.points[i])) color_at[{input.points[i].x(), input.points[i].y(), input.points[i].z()}] = input.colors[i];
+    if (is_finite(input.points[i]))
+      color_at[{input.points[i].x(), input.points[i].y(), input.points[i].z()}] = input.colors[i];
   for (std::size_t i = 0; i < filtered.size(); ++i) {
     const Point& p = filtered.points[i];
     ASSERT_EQ(p, labeled.points[i]);
@@ -60,7 +61,8 @@ TEST_F(ModelTubes, WritesBothCloudsAndTheModelOfOne) {
     ASSERT_EQ(color, label == 0 ? "#000000" : model["tubes"][label - 1]["color"].get<std::string>());
   }
   const std::string validate = "python3 " TUBEBIN_SOURCE_DIR "/tests/validate_json.py " TUBEBIN_SOURCE_DIR
-                               "/docs/model.schema.json " + out + "/model.json";
+                               "/docs/model.schema.json " +
+                               out + "/model.json";
   const int status = std::system(validate.c_str());
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (code == 77 || code == 127) GTEST_SKIP() << "needs python3 with jsonschema (Debian: python3-jsonschema)";
@@ -124,7 +126,8 @@ TEST_F(ModelTubes, ABadCloudIsReportedAndTheOthersAreDone) {
 TEST_F(ModelTubes, NamesWhatIsWrongWithAFile) {
   const std::string header = "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
   const auto pcd = [&](const std::string& points, const std::string& data) {
-    return header + "WIDTH " + points + "\nHEIGHT 1\nVIEWPOINT 0 0 2 1 0 0 0\nPOINTS " + points + "\nDATA ascii\n" + data;
+    return header + "WIDTH " + points + "\nHEIGHT 1\nVIEWPOINT 0 0 2 1 0 0 0\nPOINTS " + points + "\nDATA ascii\n" +
+           data;
   };
   const std::vector<std::pair<std::string, std::string>> files = {
       {"empty.pcd", ""},

@@ -28,9 +28,7 @@ inline std::string read_text(const fs::path& path) {
   return text.str();
 }
 
-inline void write_text(const fs::path& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
+inline void write_text(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
 /// A new folder that is gone at the end of the scope.
 class TemporaryFolder {
@@ -78,7 +76,9 @@ class Program {
   }
 
   pid_t process() const { return process_; }
-  bool running() const { return waitid(P_PID, static_cast<id_t>(process_), &info_, WEXITED | WNOHANG | WNOWAIT) == 0 && info_.si_pid == 0; }
+  bool running() const {
+    return waitid(P_PID, static_cast<id_t>(process_), &info_, WEXITED | WNOHANG | WNOWAIT) == 0 && info_.si_pid == 0;
+  }
 
   ProgramResult wait() {
     int status = 0;

@@ -106,10 +106,11 @@ TEST(WorkerPool, CountsAnExitAndAnUnexpectedExceptionAsCrashes) {
 }
 
 TEST(WorkerPool, EndsAHangAtTheTimeLimit) {
-  const PoolRun r = run(3, {.workers = 2, .attempts_max = 2, .attempt_time_limit = 0.3}, [](std::size_t job, int attempt) {
-    while (job == 1 && attempt == 0) pause();
-    return success("done");
-  });
+  const PoolRun r =
+      run(3, {.workers = 2, .attempts_max = 2, .attempt_time_limit = 0.3}, [](std::size_t job, int attempt) {
+        while (job == 1 && attempt == 0) pause();
+        return success("done");
+      });
   EXPECT_EQ(r.report.succeeded, 3u);
   ASSERT_EQ(r.outcomes.at(1).failed.size(), 1u);
   EXPECT_EQ(r.outcomes.at(1).failed[0].reason, "timeout");
@@ -161,14 +162,15 @@ TEST(WorkerPool, YieldsTheSameForAnyNumberOfWorkers) {
 
 TEST(WorkerPool, EndsTheRunOnIoAndConfigErrors) {
   EXPECT_THROW(run(5, {.workers = 2}, [](std::size_t, int) -> AttemptResult { throw IoError("disk full"); }), IoError);
-  EXPECT_THROW(run(5, {.workers = 2}, [](std::size_t, int) -> AttemptResult { throw ConfigError("no"); }),
-               ConfigError);
+  EXPECT_THROW(run(5, {.workers = 2}, [](std::size_t, int) -> AttemptResult { throw ConfigError("no"); }), ConfigError);
   expect_no_children();
 }
 
 TEST(WorkerPool, EndsWorkersWhenTheCallersBookkeepingFails) {
   const PoolEvents events{.on_finished = [](const JobOutcome&) { throw IoError("manifest"); }};
-  EXPECT_THROW(run_jobs(jobs_up_to(9), {.workers = 3}, [](std::size_t, int) { return success(""); }, events), IoError);
+  EXPECT_THROW(run_jobs(
+                   jobs_up_to(9), {.workers = 3}, [](std::size_t, int) { return success(""); }, events),
+               IoError);
   expect_no_children();
 }
 

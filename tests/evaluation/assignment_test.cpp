@@ -46,8 +46,7 @@ std::int64_t best_by_brute_force(const Counts& weights) {
   std::int64_t best = 0;
   do {
     std::int64_t sum = 0;
-    for (Eigen::Index row = 0; row < wide.rows(); ++row)
-      sum += wide(row, columns[static_cast<std::size_t>(row)]);
+    for (Eigen::Index row = 0; row < wide.rows(); ++row) sum += wide(row, columns[static_cast<std::size_t>(row)]);
     best = std::max(best, sum);
   } while (std::next_permutation(columns.begin(), columns.end()));
   return best;
@@ -62,8 +61,7 @@ TEST(Assignment, PaperExample) {
 TEST(Assignment, EqualsBruteForceOnSmallCases) {
   Random random(5);
   for (int round = 0; round < 600; ++round) {
-    const Counts weights =
-        random_weights(random.integer(1, 6), random.integer(1, 6), random.integer(1, 20), random);
+    const Counts weights = random_weights(random.integer(1, 6), random.integer(1, 6), random.integer(1, 20), random);
     EXPECT_EQ(total(weights, max_weight_assignment(weights)), best_by_brute_force(weights)) << weights;
   }
 }

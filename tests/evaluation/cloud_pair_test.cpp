@@ -51,8 +51,7 @@ PairedIds pair(const Cloud& filtered, const Cloud& labeled, SegmentField field =
   return pair_clouds({filtered, "filtered.pcd"}, {labeled, "labeled.pcd"}, field);
 }
 
-std::string error_of(const Cloud& filtered, const Cloud& labeled,
-                     SegmentField field = SegmentField::automatic) {
+std::string error_of(const Cloud& filtered, const Cloud& labeled, SegmentField field = SegmentField::automatic) {
   try {
     pair(filtered, labeled, field);
   } catch (const IoError& error) {
@@ -128,15 +127,13 @@ TEST(CloudPair, OneDuplicateTooManyIsAStranger) {
   Cloud labeled;
   labeled.points = {{1, 0, 0}, {1, 0, 0}};
   labeled.labels = {1, 1};
-  EXPECT_THAT(error_of(filtered, labeled),
-              HasSubstr("labeled.pcd: 1 of its 2 points are at no point of filtered.pcd"));
+  EXPECT_THAT(error_of(filtered, labeled), HasSubstr("labeled.pcd: 1 of its 2 points are at no point of filtered.pcd"));
 }
 
 TEST(CloudPair, CloudsThatDoNotBelongTogether) {
   Random random(4);
   EXPECT_THAT(error_of(random_cloud(50, random), random_cloud(60, random)),
-              AllOf(HasSubstr("labeled.pcd: 60 of its 60 points"), HasSubstr("filtered.pcd"),
-                    HasSubstr("point 0 at")));
+              AllOf(HasSubstr("labeled.pcd: 60 of its 60 points"), HasSubstr("filtered.pcd"), HasSubstr("point 0 at")));
 }
 
 TEST(CloudPair, PixelsWithoutAHitAreLeftOut) {

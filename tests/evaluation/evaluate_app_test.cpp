@@ -70,9 +70,8 @@ TEST_F(EvaluateApp, PairsThatCannotBeScored) {
 }
 
 TEST_F(EvaluateApp, WrongUsageExitsWithTwo) {
-  for (const char* arguments :
-       {"", "--filtered a.pcd", "--labeled a.pcd", "results --format xml", "results --jobs 0",
-        "--predictions x", "results --nonsense", "results --filtered a --labeled b"})
+  for (const char* arguments : {"", "--filtered a.pcd", "--labeled a.pcd", "results --format xml", "results --jobs 0",
+                                "--predictions x", "results --nonsense", "results --filtered a --labeled b"})
     EXPECT_EQ(evaluate(arguments).exit_code, 2) << arguments;
   EXPECT_EQ(evaluate("--help").exit_code, 0);
 }
@@ -104,8 +103,7 @@ TEST_F(EvaluateApp, AnUnfinishedResultsFolderExitsWithThree) {
   fs::remove_all(folder_.path() / "results/A2/001");
   const CommandResult result = evaluate("results");
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_THAT(result.output,
-              AllOf(HasSubstr("2 runs are not there yet"), HasSubstr("A2/001 centerline 0.3")));
+  EXPECT_THAT(result.output, AllOf(HasSubstr("2 runs are not there yet"), HasSubstr("A2/001 centerline 0.3")));
 }
 
 TEST_F(EvaluateApp, DamagedOrEmptyFoldersExitWithOne) {
@@ -173,8 +171,8 @@ TEST_F(EvaluateApp, TheDocumentedForeignAlgorithmIsScored) {
   if (!python) GTEST_SKIP() << "no python3 with numpy here";
   write_scanned_dataset(folder_.path() / "dataset", {"A3/001", "A3/002"});
   testing::write_text(path("kmeans.py"), documented_program());
-  const CommandResult program = testing::run_command(*python + " " + path("kmeans.py") + " " +
-                                                     path("dataset") + " " + path("kmeans_labels") + " 2>&1");
+  const CommandResult program = testing::run_command(*python + " " + path("kmeans.py") + " " + path("dataset") + " " +
+                                                     path("kmeans_labels") + " 2>&1");
   ASSERT_EQ(program.exit_code, 0) << program.output;
   const CommandResult result = evaluate("dataset --predictions kmeans_labels --format json --quiet");
   ASSERT_EQ(result.exit_code, 0) << result.output;

@@ -130,8 +130,7 @@ TEST(Metrics, TheBinIsNoTubeButItsPointsSpoilPrecision) {
 }
 
 TEST(Metrics, AnySplitOfTheTubesSumsToTheWhole) {
-  const Contingency c =
-      contingency({{80, 5, 0, 0, 3}, {4, 70, 0, 9, 0}, {0, 6, 20, 30, 1}, {0, 0, 0, 40, 0}});
+  const Contingency c = contingency({{80, 5, 0, 0, 3}, {4, 70, 0, 9, 0}, {0, 6, 20, 30, 1}, {0, 0, 0, 40, 0}});
   const Matching matching = match_segments(c);
   const SegmentationScores whole = score_tubes(c, matching);
   const SegmentationScores first = score_tubes(c, matching, {true, false, true, false});

@@ -10,16 +10,14 @@ namespace {
 
 using ::testing::ElementsAre;
 
-void append(std::vector<SegmentId>& truth, std::vector<SegmentId>& predicted, SegmentId t, SegmentId p,
-            int count) {
+void append(std::vector<SegmentId>& truth, std::vector<SegmentId>& predicted, SegmentId t, SegmentId p, int count) {
   truth.insert(truth.end(), static_cast<std::size_t>(count), t);
   predicted.insert(predicted.end(), static_cast<std::size_t>(count), p);
 }
 
 /// Equation 1 point by point, over every way to match truth ids with predicted ids.
-double micro_recall_by_definition(const std::vector<SegmentId>& truth,
-                                  const std::vector<SegmentId>& predicted, std::vector<SegmentId> truth_ids,
-                                  std::vector<SegmentId> predicted_ids) {
+double micro_recall_by_definition(const std::vector<SegmentId>& truth, const std::vector<SegmentId>& predicted,
+                                  std::vector<SegmentId> truth_ids, std::vector<SegmentId> predicted_ids) {
   constexpr SegmentId nothing = 9999;
   while (predicted_ids.size() < truth_ids.size() + 8) predicted_ids.push_back(nothing);
   std::sort(predicted_ids.begin(), predicted_ids.end());
@@ -112,8 +110,7 @@ TEST(MicroRecall, NamesOfSegmentsDoNotMatter) {
     predicted.push_back(static_cast<SegmentId>(random.integer(0, 9)));
     renamed.push_back(predicted.back() == 0 ? 0 : 0xffffffU - 1000 * predicted.back());
   }
-  EXPECT_EQ(match_segments(count_pairs(truth, predicted)).correct,
-            match_segments(count_pairs(truth, renamed)).correct);
+  EXPECT_EQ(match_segments(count_pairs(truth, predicted)).correct, match_segments(count_pairs(truth, renamed)).correct);
 }
 
 TEST(Contingency, CountsPairs) {

@@ -126,8 +126,7 @@ TEST(Claims, FailWhereTheOppositeIsTrue) {
     run.seconds = 1.0 - *run.seconds;
   }
   for (const Claim& claim : modelling_claims(runs, "centerline")) {
-    if (claim.statement.starts_with("Above a ratio") ||
-        claim.statement.starts_with("On set B micro-recall falls"))
+    if (claim.statement.starts_with("Above a ratio") || claim.statement.starts_with("On set B micro-recall falls"))
       continue;  // flat is flat in both directions
     EXPECT_EQ(claim.verdict, Verdict::not_confirmed) << claim.statement;
   }
@@ -145,8 +144,7 @@ TEST(Claims, OfTheGenerator) {
   GenerationSeconds seconds;
   for (const auto& [set, by_tubes] : paper_figures().generation_seconds)
     for (const auto& [tubes, value] : by_tubes) seconds[set][tubes] = {value};
-  for (const Claim& claim : generation_claims(seconds))
-    EXPECT_EQ(claim.verdict, Verdict::confirmed) << claim.here;
+  for (const Claim& claim : generation_claims(seconds)) EXPECT_EQ(claim.verdict, Verdict::confirmed) << claim.here;
   EXPECT_THAT(generation_claims(seconds)[1].here, HasSubstr("-4.8 %"));
   std::swap(seconds["A"], seconds["B"]);
   EXPECT_EQ(generation_claims(seconds)[1].verdict, Verdict::not_confirmed);
@@ -186,8 +184,7 @@ TEST(ScenePicture, ShowsTubesLabelsAndErrors) {
   }
   const ScenePicture picture = draw_scene(points);
   EXPECT_GT(picture.width, picture.height);
-  for (const std::string& png : {picture.truth, picture.labels, picture.errors})
-    EXPECT_THAT(png, HasSubstr("PNG"));
+  for (const std::string& png : {picture.truth, picture.labels, picture.errors}) EXPECT_THAT(png, HasSubstr("PNG"));
   EXPECT_NE(picture.truth, picture.labels);
   points.predicted = points.truth;
   EXPECT_EQ(draw_scene(points).truth, draw_scene(points).labels);  // matched labels take their tube's colour

@@ -64,10 +64,9 @@ TEST_F(ResultsFolder, RunsThatAreNotThereYetAreNamed) {
 
 TEST_F(ResultsFolder, FailedRunsCountAsZero) {
   fs::remove_all(run());
-  testing::write_text(
-      folder_.path() / "results" / "failures.jsonl",
-      R"({"scene": "B2/001", "method": "centerline", "ratio": 0.3, "error": "no point in the bin"})"
-      "\n");
+  testing::write_text(folder_.path() / "results" / "failures.jsonl",
+                      R"({"scene": "B2/001", "method": "centerline", "ratio": 0.3, "error": "no point in the bin"})"
+                      "\n");
   const Evaluation evaluation = read_results({results()}, {});
   EXPECT_THAT(evaluation.runs, SizeIs(24));
   EXPECT_THAT(evaluation.failed, ElementsAre("B2/001 centerline 0.3: no point in the bin"));
@@ -108,8 +107,7 @@ TEST_F(ResultsFolder, DamagedFilesAreNamed) {
 }
 
 TEST_F(ResultsFolder, FoldersThatAreNoResults) {
-  for (const char* scene : {"A1", "A2", "A3", "B1", "B2", "B3"})
-    fs::remove_all(folder_.path() / "results" / scene);
+  for (const char* scene : {"A1", "A2", "A3", "B1", "B2", "B3"}) fs::remove_all(folder_.path() / "results" / scene);
   EXPECT_THAT(error(), HasSubstr("has none of the runs"));
   testing::write_text(folder_.path() / "results" / "index.json", "{}");
   EXPECT_THAT(error(), HasSubstr("index.json: /format: missing"));

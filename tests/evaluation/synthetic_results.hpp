@@ -52,8 +52,7 @@ inline SceneRecord synthetic_scene(const std::string& name, int tubes, int cylin
     placed.tube.radius = 0.005;
     placed.tube.mass = 0.055;
     const double y = 0.012 * (k - tubes / 2);
-    for (int i = 0; i <= cylinders; ++i)
-      placed.tube.nodes.emplace_back(-0.25 + 0.5 * i / cylinders, y, 0.005);
+    for (int i = 0; i <= cylinders; ++i) placed.tube.nodes.emplace_back(-0.25 + 0.5 * i / cylinders, y, 0.005);
     for (int i = 0; i < cylinders; ++i) placed.tube.cylinders.push_back({i, i + 1, i});
     record.scene.tubes.push_back(placed);
     record.colors.push_back(0x100000U + static_cast<Color>(k));
@@ -108,9 +107,7 @@ inline nlohmann::json model_json(const SceneRecord& scene) {
 
 inline double modelling_seconds(const RunKey& key) { return 0.01 + 0.02 * key.tubes * key.ratio; }
 
-inline std::string run_folder(const RunKey& key) {
-  return fmt::format("{}/{}_{}", key.scene, key.method, key.ratio);
-}
+inline std::string run_folder(const RunKey& key) { return fmt::format("{}/{}_{}", key.scene, key.method, key.ratio); }
 
 inline void write_text(const fs::path& path, const std::string& text) {
   fs::create_directories(path.parent_path());
@@ -134,8 +131,7 @@ inline void write_synthetic_sweep(const fs::path& folder, const SyntheticSweep& 
             const fs::path run = folder / "results" / run_folder(key);
             write_text(run / "result.json", result_json(key).dump(1));
             write_text(run / "model.json", model);
-            write_text(run / "times.json",
-                       nlohmann::json{{"read", 0.001}, {"total", modelling_seconds(key)}}.dump());
+            write_text(run / "times.json", nlohmann::json{{"read", 0.001}, {"total", modelling_seconds(key)}}.dump());
           }
       }
   const nlohmann::json index = {{"format", "tubebin results 1"},

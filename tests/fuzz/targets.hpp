@@ -39,8 +39,8 @@ inline void cloud(std::string_view bytes) {
   } catch (const IoError&) {
     return;
   }
-  for (const CloudFormat format : {CloudFormat::pcd_binary, CloudFormat::pcd_compressed,
-                                   CloudFormat::pcd_ascii, CloudFormat::ply_binary}) {
+  for (const CloudFormat format :
+       {CloudFormat::pcd_binary, CloudFormat::pcd_compressed, CloudFormat::pcd_ascii, CloudFormat::ply_binary}) {
     const Cloud back = parse_cloud(format_cloud(cloud, format), "round trip");
     require(same_points(back.points, cloud.points), "points read back");
     require(back.colors == cloud.colors && back.labels == cloud.labels, "colours and labels read back");
@@ -96,9 +96,7 @@ inline void yaml(std::string_view bytes) {
   const auto read = [](const std::string& text, Options& into) {
     read_yaml_text(text, "fuzz", [&](Fields& fields) { describe_all(fields, into); });
   };
-  const auto write = [](Options& from) {
-    return write_yaml([&](Fields& fields) { describe_all(fields, from); });
-  };
+  const auto write = [](Options& from) { return write_yaml([&](Fields& fields) { describe_all(fields, from); }); };
   try {
     read(std::string(bytes), options);
   } catch (const ConfigError&) {

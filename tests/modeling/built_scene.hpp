@@ -50,8 +50,7 @@ inline ModelingOptions known_radius(ModelingMethod method = ModelingMethod::cent
 /// Equation 1 for a result, from the cloud's own labels.
 inline double micro_recall_of(const ModelingResult& result, const Cloud& cloud) {
   std::vector<std::vector<std::int64_t>> table(64, std::vector<std::int64_t>(result.tubes.size() + 1, 0));
-  for (std::size_t i = 0; i < result.source.size(); ++i)
-    ++table[cloud.labels[result.source[i]]][result.labels[i]];
+  for (std::size_t i = 0; i < result.source.size(); ++i) ++table[cloud.labels[result.source[i]]][result.labels[i]];
   // Few tubes: the best matching by trying all assignments of tubes to rows, one row after the other.
   std::vector<bool> used(result.tubes.size() + 1, false);
   const auto best = [&](const auto& self, std::size_t row) -> std::int64_t {

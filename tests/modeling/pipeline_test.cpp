@@ -38,8 +38,9 @@ Scene end_on_a_tube() {
 
 Scene bend_at_the_limit() {
   const double c = std::cos(radians(45.0));
-  return scene_of({tube_along({Vec3(-0.2, -0.05, kR), Vec3(-0.05, -0.05, kR), Vec3(-0.05 + 0.1 * c, -0.05 + 0.1 * c, kR),
-                               Vec3(-0.05 + 0.1 * c, 0.05 + 0.1 * c, kR)})});
+  return scene_of(
+      {tube_along({Vec3(-0.2, -0.05, kR), Vec3(-0.05, -0.05, kR), Vec3(-0.05 + 0.1 * c, -0.05 + 0.1 * c, kR),
+                   Vec3(-0.05 + 0.1 * c, 0.05 + 0.1 * c, kR)})});
 }
 
 /// The upper tube hides the middle of the lower one.
@@ -190,7 +191,8 @@ TEST(Pipeline, ARigidMotionOfTheInputMovesTheResultWithIt) {
     double nearest = 1.0;
     for (const TubeModel& other : b.tubes) {
       double farthest = 0.0;
-      for (const Vec3& node : tube.nodes) farthest = std::max(farthest, distance_to_polyline(motion * node, other.nodes));
+      for (const Vec3& node : tube.nodes)
+        farthest = std::max(farthest, distance_to_polyline(motion * node, other.nodes));
       nearest = std::min(nearest, farthest);
     }
     EXPECT_LT(nearest, 0.001);
@@ -211,7 +213,8 @@ TEST(Pipeline, MakesNoTubesOfNoise) {
   Random random(9);
   std::vector<Point> points;
   for (int i = 0; i < 5000; ++i)
-    points.emplace_back(static_cast<float>(random.uniform(-0.25, 0.25)), static_cast<float>(random.uniform(-0.15, 0.15)),
+    points.emplace_back(static_cast<float>(random.uniform(-0.25, 0.25)),
+                        static_cast<float>(random.uniform(-0.15, 0.15)),
                         static_cast<float>(random.uniform(0.01, 0.19)));
   const ModelingInput input{.points = points, .world_from_sensor = Scanner{}.world_from_scanner(), .bin = Bin{}};
   for (const ModelingMethod method : {ModelingMethod::centerline, ModelingMethod::region_growing})

@@ -40,8 +40,8 @@ TEST(PathCover, IsTheCheapestOfAll) {
         chosen.insert(static_cast<std::uint32_t>(random.integer(0, static_cast<int>(items) - 1)));
       candidates.push_back({{chosen.begin(), chosen.end()}, random.uniform(0.0, 3.0)});
     }
-    const auto cover =
-        cheapest_path_cover(items, candidates, [](std::uint32_t, std::uint32_t) { return true; }, 100000);
+    const auto cover = cheapest_path_cover(
+        items, candidates, [](std::uint32_t, std::uint32_t) { return true; }, 100000);
     double cost = 0.0;
     std::vector<int> held(items, 0);
     for (const std::uint32_t index : cover) {
@@ -54,7 +54,7 @@ TEST(PathCover, IsTheCheapestOfAll) {
 }
 
 TEST(PathCover, KeepsIncompatiblePathsApart) {
-  const std::vector<PathCandidate> candidates = {{{0}, 1.0}, {{1}, 1.0}, {{2}, 1.0}, {{3}, 1.0},
+  const std::vector<PathCandidate> candidates = {{{0}, 1.0},    {{1}, 1.0},    {{2}, 1.0},   {{3}, 1.0},
                                                  {{0, 1}, 0.1}, {{2, 3}, 0.2}, {{1, 2}, 9.0}};
   const auto cover = cheapest_path_cover(
       4, candidates, [](std::uint32_t a, std::uint32_t b) { return !(a + b == 9 && a != b); }, 1000);
@@ -91,7 +91,8 @@ TEST(Labeling, DistancesMatchSampledSurfaces) {
 TEST(Labeling, TakesTheNearestSurfaceWithinReach) {
   const std::vector<Vec3> low = {Vec3(-0.1, 0, 0.0125), Vec3(0.1, 0, 0.0125)};
   const std::vector<Vec3> high = {Vec3(0, -0.1, 0.0375), Vec3(0, 0.1, 0.0375)};
-  const std::vector<Point> points = {Point(0.05f, 0.0f, 0.0253f), Point(0.0f, 0.05f, 0.0505f), Point(0.05f, 0.05f, 0.0f)};
+  const std::vector<Point> points = {Point(0.05f, 0.0f, 0.0253f), Point(0.0f, 0.05f, 0.0505f),
+                                     Point(0.05f, 0.05f, 0.0f)};
   const auto nearest = nearest_surfaces(points, {{low, 0.0125}, {high, 0.0125}}, 0.006);
   EXPECT_EQ(nearest[0].surface, 0u);
   EXPECT_EQ(nearest[1].surface, 1u);
@@ -120,8 +121,8 @@ TEST(Filtering, DownsamplingIsExactSeededAndBlindToTheOrder) {
 
 TEST(Filtering, CropsFloorAndWalls) {
   const Bin bin;
-  const std::vector<Point> points = {Point(0, 0, 0), Point(0, 0, 0.01f), Point(0.275f, 0, 0.1f), Point(0.2f, 0.1f, 0.1f),
-                                     Point(NAN, 0, 0), Point(0.27f, 0, 0.25f)};
+  const std::vector<Point> points = {Point(0, 0, 0),          Point(0, 0, 0.01f), Point(0.275f, 0, 0.1f),
+                                     Point(0.2f, 0.1f, 0.1f), Point(NAN, 0, 0),   Point(0.27f, 0, 0.25f)};
   const ModelingInput input{.points = points, .world_from_sensor = Scanner{}.world_from_scanner(), .bin = bin};
   EXPECT_EQ(crop_bin(input, {}), (std::vector<std::uint32_t>{1, 3, 5}));
 }

@@ -23,8 +23,8 @@ double distance_to_tube(const PlacedTube& tube, const Vec3& p) {
   double nearest = 1e9;
   const std::vector<int> degrees = tube.tube.node_degrees();
   for (const Cylinder& c : tube.tube.cylinders)
-    nearest = std::min(nearest, distance_to_cylinder(tube.node_in_world(c.node_a), tube.node_in_world(c.node_b),
-                                                     tube.tube.radius, p));
+    nearest = std::min(
+        nearest, distance_to_cylinder(tube.node_in_world(c.node_a), tube.node_in_world(c.node_b), tube.tube.radius, p));
   for (int i = 0; i < static_cast<int>(degrees.size()); ++i)
     if (degrees[static_cast<std::size_t>(i)] >= 2)
       nearest = std::min(nearest, (p - tube.node_in_world(i)).norm() - tube.tube.radius);

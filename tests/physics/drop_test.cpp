@@ -1,5 +1,3 @@
-#include "tubebin/physics/drop_simulator.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include "physics/rest_check.hpp"
 #include "physics/rigid_world.hpp"
 #include "physics/spawn.hpp"
+#include "tubebin/physics/drop_simulator.hpp"
 #include "tubebin/tube/tube_generator.hpp"
 
 namespace tubebin {

@@ -30,8 +30,7 @@ void expect_labels_agree(const Scene& scene) {
   ASSERT_EQ(drawn.width, scanned.window.width);
   ASSERT_EQ(drawn.height, scanned.window.height);
   const auto color_at = [&](int column, int row) {
-    return scanned.cloud
-        .colors[static_cast<std::size_t>(row) * scanned.cloud.width + static_cast<std::size_t>(column)];
+    return scanned.cloud.colors[static_cast<std::size_t>(row) * scanned.cloud.width + static_cast<std::size_t>(column)];
   };
   const auto at_silhouette = [&](int column, int row) {
     for (int y = std::max(row - 1, 0); y <= std::min(row + 1, drawn.height - 1); ++y)

@@ -33,8 +33,7 @@ TEST(SolidCylinder, EndsFlatAndAtItsRadius) {
   EXPECT_DOUBLE_EQ(cylinder.intersect({1.0, 0, 2.6}).end, 1.0);
   EXPECT_TRUE(cylinder.intersect({1.0, 0, 2.499}).empty());
   const SolidCylinder below({0, -1, 3}, {0, 1, 3}, 0.5);
-  const double tangent =
-      0.5 / std::sqrt(9.0 - 0.25);  // slope of the line from the origin that touches the circle
+  const double tangent = 0.5 / std::sqrt(9.0 - 0.25);  // slope of the line from the origin that touches the circle
   EXPECT_FALSE(below.intersect({tangent * (1.0 - 1e-12), 0, 1}).empty());
   EXPECT_TRUE(below.intersect({tangent * (1.0 + 1e-12), 0, 1}).empty());
 }

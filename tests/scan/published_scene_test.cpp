@@ -45,8 +45,7 @@ TEST_P(PublishedScene, LabelsAgreeWithSphereTracingAlongSilhouettes) {
     const int row = result.window.y + static_cast<int>(i / cloud.width);
     const auto traced = testing::sphere_trace(scene_, camera.pixel_direction_in_world(column, row));
     ++compared;
-    if (traced.found != is_finite(cloud.points[i]) || (traced.found && traced.label != cloud.labels[i]))
-      ++wrong;
+    if (traced.found != is_finite(cloud.points[i]) || (traced.found && traced.label != cloud.labels[i])) ++wrong;
   }
   EXPECT_GT(compared, 500u);
   EXPECT_EQ(wrong, 0u);
@@ -60,15 +59,15 @@ TEST_P(PublishedScene, FloorAtTheRangesEndIsThere) {
   // window.
   const Camera camera(scene_.scanner);
   const double border = scene_.bin.wall_thickness;
-  const Eigen::Vector2d corner = camera.project_from_world(
-      {scene_.bin.length / 2 + border, -scene_.bin.width / 2 - border, scene_.bin.height});
+  const Eigen::Vector2d corner =
+      camera.project_from_world({scene_.bin.length / 2 + border, -scene_.bin.width / 2 - border, scene_.bin.height});
   const double bin_pixels = 4.0 * std::abs(corner.x() - 960.0) * std::abs(corner.y() - 600.0);
   EXPECT_NEAR(static_cast<double>(result.cloud.size() - holes), bin_pixels, 0.01 * bin_pixels);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PublishedScene,
-                         ::testing::Values("A1_1", "A5_1", "A10_1", "A10_2", "A15_1", "A20_1", "B1_1", "B5_1",
-                                           "B10_1", "B10_2", "B20_1", "C5_1", "C10_1"));
+                         ::testing::Values("A1_1", "A5_1", "A10_1", "A10_2", "A15_1", "A20_1", "B1_1", "B5_1", "B10_1",
+                                           "B10_2", "B20_1", "C5_1", "C10_1"));
 
 }  // namespace
 }  // namespace tubebin

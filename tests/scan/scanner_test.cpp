@@ -29,10 +29,8 @@ int expect_agreement_with_sphere_tracing(Scene scene) {
     const int column = static_cast<int>(i % cloud.width), row = static_cast<int>(i / cloud.width);
     const auto traced = sphere_trace(scene, camera.pixel_direction_in_world(column, row));
     hits += traced.found ? 1 : 0;
-    if (traced.found != is_finite(cloud.points[i]) || (traced.found && traced.label != cloud.labels[i]))
-      ++wrong_labels;
-    else if (traced.found && (cloud.points[i].cast<double>() - traced.point).norm() > 2e-5)
-      ++wrong_places;
+    if (traced.found != is_finite(cloud.points[i]) || (traced.found && traced.label != cloud.labels[i])) ++wrong_labels;
+    else if (traced.found && (cloud.points[i].cast<double>() - traced.point).norm() > 2e-5) ++wrong_places;
   }
   EXPECT_EQ(wrong_labels, 0);
   EXPECT_EQ(wrong_places, 0);
@@ -154,8 +152,7 @@ TEST(Scanner, RegionsShowTheSameSurfaces) {
 
   std::size_t tube_point = 0;
   for (std::size_t i = 0; i < full.cloud.size(); ++i) {
-    const int column = static_cast<int>(i % 1920) - bin.window.x,
-              row = static_cast<int>(i / 1920) - bin.window.y;
+    const int column = static_cast<int>(i % 1920) - bin.window.x, row = static_cast<int>(i / 1920) - bin.window.y;
     if (column < 0 || row < 0 || column >= bin.window.width || row >= bin.window.height) {
       ASSERT_FALSE(is_finite(full.cloud.points[i]));
       continue;
@@ -300,9 +297,7 @@ TEST(Scanner, SameSceneSameBytes) {
   const Scene scene = random_scene(10, 17);
   const Scan first = scan(scene), second = scan(scene);
   ASSERT_EQ(first.cloud.size(), second.cloud.size());
-  EXPECT_EQ(
-      std::memcmp(first.cloud.points.data(), second.cloud.points.data(), first.cloud.size() * sizeof(Point)),
-      0);
+  EXPECT_EQ(std::memcmp(first.cloud.points.data(), second.cloud.points.data(), first.cloud.size() * sizeof(Point)), 0);
   EXPECT_EQ(first.cloud.labels, second.cloud.labels);
 }
 

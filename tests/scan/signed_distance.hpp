@@ -48,10 +48,9 @@ inline double tube_distance(const Vec3& p, const PlacedTube& placed) {
 /// distance to it is exact outside and on the surface.
 inline double bin_distance(const Vec3& p, const Bin& bin) {
   const double x = bin.length / 2, y = bin.width / 2, w = bin.wall_thickness, h = bin.height;
-  const double walls = std::min({box_distance(p, {-x - w, -y - w, -w}, {-x, y + w, h}),
-                                 box_distance(p, {x, -y - w, -w}, {x + w, y + w, h}),
-                                 box_distance(p, {-x - w, -y - w, -w}, {x + w, -y, h}),
-                                 box_distance(p, {-x - w, y, -w}, {x + w, y + w, h})});
+  const double walls = std::min(
+      {box_distance(p, {-x - w, -y - w, -w}, {-x, y + w, h}), box_distance(p, {x, -y - w, -w}, {x + w, y + w, h}),
+       box_distance(p, {-x - w, -y - w, -w}, {x + w, -y, h}), box_distance(p, {-x - w, y, -w}, {x + w, y + w, h})});
   return std::min(walls, box_distance(p, {-x - w, -y - w, -w}, {x + w, y + w, 0.0}));
 }
 

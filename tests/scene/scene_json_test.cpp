@@ -90,8 +90,7 @@ TEST(SceneJson, ConvenienceValuesAreWhatTheySay) {
   EXPECT_NEAR(tube["length"].get<double>(), 0.5, 1e-12);
   // The image's right border is half the field of view off the axis.
   const json& intrinsics = scene["scanner"]["intrinsics"];
-  const double half_fov =
-      std::atan((1920.0 - intrinsics["cx"].get<double>()) / intrinsics["fx"].get<double>());
+  const double half_fov = std::atan((1920.0 - intrinsics["cx"].get<double>()) / intrinsics["fx"].get<double>());
   EXPECT_NEAR(2.0 * half_fov, radians(record.scene.scanner.horizontal_fov_deg), 1e-12);
 }
 
@@ -99,17 +98,15 @@ TEST(SceneJson, AgreesWithItsSchema) {
   const std::string path = ::testing::TempDir() + "tubebin_scene.json";
   const auto validate = [&](const std::string& text) {
     write_file_atomically(path, text);
-    const std::string command = "python3 " TUBEBIN_SOURCE_DIR "/tests/validate_json.py " TUBEBIN_SOURCE_DIR
-                                "/docs/scene.schema.json " +
-                                path;
+    const std::string command =
+        "python3 " TUBEBIN_SOURCE_DIR "/tests/validate_json.py " TUBEBIN_SOURCE_DIR "/docs/scene.schema.json " + path;
     const int status = std::system(command.c_str());
     std::filesystem::remove(path);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   };
   const std::string text = format_scene_json(make_record(4));
   const int result = validate(text);
-  if (result == 77 || result == 127)
-    GTEST_SKIP() << "needs python3 with jsonschema (Debian: python3-jsonschema)";
+  if (result == 77 || result == 127) GTEST_SKIP() << "needs python3 with jsonschema (Debian: python3-jsonschema)";
   EXPECT_EQ(result, 0);
   EXPECT_EQ(validate(format_scene_json(make_record(0))), 0);
   json wrong = json::parse(text);
@@ -175,13 +172,11 @@ TEST(SceneJson, ValuesThatCannotBeAreRefused) {
   EXPECT_THAT(error_with("/seed", -1), HasSubstr("/seed: -1 is not valid"));
   EXPECT_THAT(error_with("/bin/length", nullptr), HasSubstr("/bin/length: null is not valid"));
   EXPECT_THAT(error_with("/bin/color", {0, 256, 0}), HasSubstr("/bin/color/1: 256"));
-  EXPECT_THAT(error_with("/scanner/width", 1.5),
-              HasSubstr("/scanner/width: 1.5 is not valid; valid: a whole number"));
+  EXPECT_THAT(error_with("/scanner/width", 1.5), HasSubstr("/scanner/width: 1.5 is not valid; valid: a whole number"));
   EXPECT_THAT(error_with("/scanner/width", 1e30), HasSubstr("/scanner/width"));
   EXPECT_THAT(error_with("/scanner/range_max", 0.01), HasSubstr("beyond range_min"));
   EXPECT_THAT(error_with("/scanner/window/width", 1900), HasSubstr("/scanner/window/width: 1900"));
-  EXPECT_THAT(error_with("/tubes/1/radius", 0),
-              HasSubstr("/tubes/1/radius: 0 is not valid; valid: a number above 0"));
+  EXPECT_THAT(error_with("/tubes/1/radius", 0), HasSubstr("/tubes/1/radius: 0 is not valid; valid: a number above 0"));
   EXPECT_THAT(error_with("/tubes/1/label", 3), HasSubstr("/tubes/1/label: 3"));
   EXPECT_THAT(error_with("/tubes/1/cylinders/0/node_b", 99), HasSubstr("/tubes/1/cylinders/0/node_b: 99"));
   EXPECT_THAT(error_with("/tubes/1/cylinders/0/node_b", 0), HasSubstr("nodes at different places"));

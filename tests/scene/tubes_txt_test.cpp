@@ -85,8 +85,7 @@ TEST(TubesTxt, AxesAlongAndAgainstZAreWritten) {
 TEST(TubesTxt, NoTubesAreAScene) { EXPECT_TRUE(parse_tubes_txt(format_tubes_txt({}), "a.txt").empty()); }
 
 TEST(TubesTxt, ReadsThePublishedScenesBranchingOnesToo) {
-  if (!std::filesystem::exists(PUBLISHED_SCENES_DIR))
-    GTEST_SKIP() << "no published scenes in " PUBLISHED_SCENES_DIR;
+  if (!std::filesystem::exists(PUBLISHED_SCENES_DIR)) GTEST_SKIP() << "no published scenes in " PUBLISHED_SCENES_DIR;
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(PUBLISHED_SCENES_DIR)) {
     if (entry.path().extension() != ".txt") continue;
@@ -133,29 +132,22 @@ TEST(TubesTxt, ErrorsNameLineAndCause) {
   EXPECT_EQ(error_of("ten\n"), "a.txt:1: 'ten' is not the number of tubes");
   EXPECT_EQ(error_of(replaced(kTube, "1\n", "2\n")),
             "a.txt: truncated after line 5: the first line says 2 tubes, but there are only 1");
-  EXPECT_EQ(error_of(replaced(kTube, "1\n", "0\n")),
-            "a.txt:2: the file's first line says 0 tubes, but there is more");
+  EXPECT_EQ(error_of(replaced(kTube, "1\n", "0\n")), "a.txt:2: the file's first line says 0 tubes, but there is more");
   EXPECT_THAT(error_of(replaced(kTube, "1 2 1\n", "1 4000000000 1\n")),
               HasSubstr("a.txt:5: found 13 values, expected a node line"));
   EXPECT_THAT(error_of(replaced(kTube, "1 2 1\n", "1 2 4000000000\n")),
               HasSubstr("a.txt: truncated after line 5: expected an edge line"));
   EXPECT_THAT(error_of(replaced(kTube, "1 2 1\n", "1 -2 1\n")), HasSubstr("a.txt:2: node count '-2'"));
-  EXPECT_THAT(error_of(replaced(kTube, "2 0 0 0.5", "1 0 0 0.5")),
-              HasSubstr("a.txt:4: the node id 1 stands twice"));
-  EXPECT_THAT(error_of(replaced(kTube, "2 0 0 0.5", "2 0 nan 0.5")),
-              HasSubstr("coordinate 'nan' is not a number"));
-  EXPECT_THAT(error_of(replaced(kTube, "2 0 0 0.5 0.01", "2 0 0 0.5 0.02")),
-              HasSubstr("a tube has one radius"));
-  EXPECT_THAT(error_of(replaced(kTube, "1 0 0 0 0.01", "1 0 0 0 -1")),
-              HasSubstr("a.txt:3: radius -1 is not valid"));
-  EXPECT_THAT(error_of(replaced(kTube, "e_1_2 1 2", "e_1_2 1 3")),
-              HasSubstr("a.txt:5: the edge names a node '3'"));
+  EXPECT_THAT(error_of(replaced(kTube, "2 0 0 0.5", "1 0 0 0.5")), HasSubstr("a.txt:4: the node id 1 stands twice"));
+  EXPECT_THAT(error_of(replaced(kTube, "2 0 0 0.5", "2 0 nan 0.5")), HasSubstr("coordinate 'nan' is not a number"));
+  EXPECT_THAT(error_of(replaced(kTube, "2 0 0 0.5 0.01", "2 0 0 0.5 0.02")), HasSubstr("a tube has one radius"));
+  EXPECT_THAT(error_of(replaced(kTube, "1 0 0 0 0.01", "1 0 0 0 -1")), HasSubstr("a.txt:3: radius -1 is not valid"));
+  EXPECT_THAT(error_of(replaced(kTube, "e_1_2 1 2", "e_1_2 1 3")), HasSubstr("a.txt:5: the edge names a node '3'"));
   EXPECT_THAT(error_of(replaced(kTube, "e_1_2 1 2", "e_1_2 1 1")), HasSubstr("at the same place"));
   EXPECT_THAT(error_of(replaced(kTube, "1 2 1 0.01", "1 2 0 0.01")), HasSubstr("order '0'"));
   EXPECT_THAT(error_of(replaced(kTube, "0 0 0.25", "0 0 0.26")), HasSubstr("the centre is 1.00e-02 m off"));
   EXPECT_THAT(error_of(replaced(kTube, "0 0.5\n", "0 0.6\n")), HasSubstr("length 0.6 is not the distance"));
-  EXPECT_THAT(error_of(replaced(kTube, "0.25 1 0 0 0", "0.25 0 1 0 0")),
-              HasSubstr("the axis is 2.00e+00 off"));
+  EXPECT_THAT(error_of(replaced(kTube, "0.25 1 0 0 0", "0.25 0 1 0 0")), HasSubstr("the axis is 2.00e+00 off"));
   EXPECT_THAT(error_of(replaced(replaced(kTube, "1 2 1\n", "1 3 1\n"), "2 0 0", "3 1 1 1 0.01\n2 0 0")),
               HasSubstr("no edge of this tube uses its node 3"));
 }

@@ -1,9 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "tubebin/tube/tube_generator.hpp"
 
@@ -98,7 +97,8 @@ TEST(MassProperties, InertiaOfGeneratedTubesIsPositiveDefinite) {
   TubeOptions options;
   options.bend_angle_max_deg = 120.0;
   for (const Tube& tube : generate_tubes(200, options, random))
-    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(mass_properties(tube).inertia).eigenvalues().minCoeff(), 0);
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(mass_properties(tube).inertia).eigenvalues().minCoeff(),
+              0);
 }
 
 }  // namespace

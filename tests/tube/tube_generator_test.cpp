@@ -54,7 +54,8 @@ TEST(Algorithm3, BendAnglesAreUniformBetweenTheLimits) {
   Random random(3);
   std::vector<double> angles;
   for (int trial = 0; trial < 500; ++trial)
-    for (const double angle : bend_angles(generate_endpoints({0.1, 0.05, 0.02, 0.2, 0.13}, radians(5), radians(45), random)))
+    for (const double angle :
+         bend_angles(generate_endpoints({0.1, 0.05, 0.02, 0.2, 0.13}, radians(5), radians(45), random)))
       angles.push_back(angle);
   EXPECT_GE(*std::min_element(angles.begin(), angles.end()), radians(5) - 1e-7);
   EXPECT_LE(*std::max_element(angles.begin(), angles.end()), radians(45) + 1e-7);

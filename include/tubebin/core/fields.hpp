@@ -38,7 +38,7 @@ class Fields {
 
   /// An enumeration whose values 0, 1, ... are called `names` in order.
   template <typename Enum>
-    requires std::is_enum_v<Enum>
+  requires std::is_enum_v<Enum>
   void choice(const char* key, Enum& value, const std::vector<std::string>& names, const char* doc) {
     int index = static_cast<int>(value);
     choice(key, index, names, doc);

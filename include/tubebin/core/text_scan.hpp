@@ -13,8 +13,7 @@ namespace tubebin {
 /// Hands out a text line by line, without "\n" or "\r\n", and counts.
 class LineScanner {
  public:
-  explicit LineScanner(std::string_view text, std::size_t lines_before = 0)
-      : text_(text), number_(lines_before) {}
+  explicit LineScanner(std::string_view text, std::size_t lines_before = 0) : text_(text), number_(lines_before) {}
 
   /// The next line; nothing at the end of the text.
   std::optional<std::string_view> next() {

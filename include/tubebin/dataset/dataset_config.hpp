@@ -21,13 +21,13 @@ struct OutputOptions {
 };
 
 struct DatasetConfig {
-  std::string tool_version;            ///< that makes the data set
-  std::string set = "A";               ///< scenes are called <set><tubes>/<case>
+  std::string tool_version;  ///< that makes the data set
+  std::string set = "A";     ///< scenes are called <set><tubes>/<case>
   std::uint64_t seed = 1;
   std::vector<int> tubes = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 20};
-  int cases = 20;                      ///< scenes for each number of tubes
-  int attempts_max = 50;               ///< per scene
-  double attempt_time_limit = 120.0;   ///< seconds of wall-clock time, per attempt
+  int cases = 20;                     ///< scenes for each number of tubes
+  int attempts_max = 50;              ///< per scene
+  double attempt_time_limit = 120.0;  ///< seconds of wall-clock time, per attempt
   TubeOptions tube;
   Bin bin;
   PhysicsOptions physics;
@@ -39,7 +39,8 @@ void describe(Fields& fields, DatasetConfig& config);
 /// The configuration as `describe` wants it bound, for read_yaml_*, write_yaml and the like.
 std::function<void(Fields&)> fields_of(DatasetConfig& config);
 
-/// Reads and checks a configuration file, for this tool version. Throws ConfigError with file:line:column, key, value and what is valid.
+/// Reads and checks a configuration file, for this tool version. Throws ConfigError with file:line:column, key, value
+/// and what is valid.
 DatasetConfig load_config(const std::string& path);
 /// Throws ConfigError where values contradict each other; `places` says where each was set.
 void check(const DatasetConfig& config, const KeyPlaces& places);

@@ -14,12 +14,12 @@
 namespace tubebin {
 
 struct GenerationReport {
-  int signal = 0;                       ///< that ended the run early; 0: none
-  std::size_t complete_before = 0;      ///< scenes of those asked for
+  int signal = 0;                   ///< that ended the run early; 0: none
+  std::size_t complete_before = 0;  ///< scenes of those asked for
   std::size_t made = 0;
-  std::vector<std::string> failed;      ///< scenes given up, each with its reasons
-  std::map<std::string, int> rejects;   ///< failed attempts by reason
-  double seconds = 0.0;                 ///< wall-clock time of the run
+  std::vector<std::string> failed;     ///< scenes given up, each with its reasons
+  std::map<std::string, int> rejects;  ///< failed attempts by reason
+  double seconds = 0.0;                ///< wall-clock time of the run
 
   std::size_t rejects_total() const;
 };

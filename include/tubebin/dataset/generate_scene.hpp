@@ -10,7 +10,7 @@ namespace tubebin {
 struct GeneratedScene {
   DropFailure failure = DropFailure::none;
   std::string failure_detail;
-  SceneContent content;                   ///< empty after a failure
+  SceneContent content;  ///< empty after a failure
   DropFigures physics;
   std::map<std::string, double> seconds;  ///< wall-clock time of each stage
 };

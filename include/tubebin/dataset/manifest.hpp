@@ -21,11 +21,11 @@ struct FileRecord {
 
 /// What the manifest says about a scene.
 struct ManifestRecord {
-  std::string id;                          ///< "A10/007"
+  std::string id;  ///< "A10/007"
   int tubes = 0;
-  std::uint64_t seed = 0;                  ///< of the attempt that succeeded
-  std::vector<FailedAttempt> rejected;     ///< the attempts before it
-  std::map<std::string, double> seconds;   ///< wall-clock time by stage, and "total" with all attempts
+  std::uint64_t seed = 0;                 ///< of the attempt that succeeded
+  std::vector<FailedAttempt> rejected;    ///< the attempts before it
+  std::map<std::string, double> seconds;  ///< wall-clock time by stage, and "total" with all attempts
   DropFigures physics;
   std::map<std::string, FileRecord> files;  ///< by name in the scene's folder
 };

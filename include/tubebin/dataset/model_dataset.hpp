@@ -16,8 +16,8 @@ struct BatchOptions {
   std::vector<ModelingMethod> methods = {ModelingMethod::centerline};
   std::vector<double> ratios = {1.0};
   int jobs = 1;
-  int cases = 0;               ///< of each set and number of tubes, the first ones; 0: all
-  double time_limit = 600.0;   ///< seconds a run
+  int cases = 0;              ///< of each set and number of tubes, the first ones; 0: all
+  double time_limit = 600.0;  ///< seconds a run
   bool keep_clouds = false;
 };
 

@@ -17,7 +17,7 @@ std::vector<std::string> verify_scene(const std::string& folder, const DatasetCo
                                       const ManifestRecord& record);
 
 struct VerificationReport {
-  int signal = 0;                     ///< that ended the check early; 0: none
+  int signal = 0;  ///< that ended the check early; 0: none
   std::size_t checked = 0;
   std::vector<SceneId> damaged;       ///< scenes with problems, or that the manifest doesn't record
   std::vector<std::string> problems;  ///< "A10/007: cloud.pcd is missing"

@@ -30,7 +30,9 @@ struct AttemptResult {
 };
 
 inline AttemptResult successful_attempt(std::string text) { return {true, std::move(text), "", {}}; }
-inline AttemptResult successful_attempt(std::function<std::string()> finish) { return {true, "", "", std::move(finish)}; }
+inline AttemptResult successful_attempt(std::function<std::string()> finish) {
+  return {true, "", "", std::move(finish)};
+}
 inline AttemptResult failed_attempt(std::string reason, std::string detail) {
   return {false, std::move(reason), std::move(detail), {}};
 }

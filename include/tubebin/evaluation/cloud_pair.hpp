@@ -22,14 +22,12 @@ struct NamedCloud {
 struct PairedIds {
   std::vector<std::uint32_t> points;  ///< index in the filtered cloud
   std::vector<SegmentId> truth;       ///< label (0 = bin) or colour
-  std::vector<SegmentId>
-      predicted;  ///< label or colour; kNullId also where the labelled cloud lacks the point
-  std::optional<SegmentId> bin_id;  ///< of `truth`; colours alone do not tell which is the bin's
+  std::vector<SegmentId> predicted;   ///< label or colour; kNullId also where the labelled cloud lacks the point
+  std::optional<SegmentId> bin_id;    ///< of `truth`; colours alone do not tell which is the bin's
   bool truth_is_color = false;
   bool predicted_is_color = false;
-  std::size_t missing = 0;  ///< points of the filtered cloud that the labelled cloud lacks
-  std::size_t unannotated =
-      0;  ///< points of the filtered cloud in the null colour: no ground truth, left out
+  std::size_t missing = 0;      ///< points of the filtered cloud that the labelled cloud lacks
+  std::size_t unannotated = 0;  ///< points of the filtered cloud in the null colour: no ground truth, left out
 };
 
 /// Matches the clouds by position: the labelled cloud has the filtered cloud's points in any order, or a

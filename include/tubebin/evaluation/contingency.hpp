@@ -28,9 +28,7 @@ struct Contingency {
   std::int64_t truth_size(std::size_t row) const {
     return counts.row(static_cast<Eigen::Index>(row)).sum() + unlabeled[row];
   }
-  std::int64_t predicted_size(std::size_t column) const {
-    return counts.col(static_cast<Eigen::Index>(column)).sum();
-  }
+  std::int64_t predicted_size(std::size_t column) const { return counts.col(static_cast<Eigen::Index>(column)).sum(); }
   std::int64_t count(std::size_t row, std::size_t column) const {
     return counts(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
   }

@@ -7,15 +7,12 @@ namespace tubebin {
 
 /// The matching M between ground-truth and predicted segments.
 struct Matching {
-  std::vector<int>
-      column_of_row;         ///< into the contingency's rows and columns; kUnmatched where there is none
-  std::int64_t correct = 0;  ///< points whose predicted segment is the one matched with their own
-  std::int64_t total = 0;    ///< points of the filtered cloud
+  std::vector<int> column_of_row;  ///< into the contingency's rows and columns; kUnmatched where there is none
+  std::int64_t correct = 0;        ///< points whose predicted segment is the one matched with their own
+  std::int64_t total = 0;          ///< points of the filtered cloud
 
   /// Equation 1; 0 for a cloud without points.
-  double micro_recall() const {
-    return total > 0 ? static_cast<double>(correct) / static_cast<double>(total) : 0.0;
-  }
+  double micro_recall() const { return total > 0 ? static_cast<double>(correct) / static_cast<double>(total) : 0.0; }
 };
 
 /// What becomes of the bin's points, where the contingency tells them apart.

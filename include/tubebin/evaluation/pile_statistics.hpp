@@ -13,10 +13,10 @@ namespace tubebin {
 constexpr double kTouchingGap = 0.00025;
 
 struct PileStatistics {
-  double mean_height = 0.0;    ///< of the centrelines above the floor, metres
-  double top_height = 0.0;     ///< of the highest surface above the floor, metres
-  double mean_tilt_deg = 0.0;  ///< of the cylinders against the horizontal, weighted by length, degrees
-  double spread = 0.0;  ///< root mean square horizontal distance of the centrelines from their middle, metres
+  double mean_height = 0.0;     ///< of the centrelines above the floor, metres
+  double top_height = 0.0;      ///< of the highest surface above the floor, metres
+  double mean_tilt_deg = 0.0;   ///< of the cylinders against the horizontal, weighted by length, degrees
+  double spread = 0.0;          ///< root mean square horizontal distance of the centrelines from their middle, metres
   double contacts = 0.0;        ///< other tubes that a tube touches, mean over the tubes
   double penetration = 0.0;     ///< deepest, of tubes into each other and into the floor, metres
   double visible_points = 0.0;  ///< points of a tube in the scanner's image, mean over the tubes

@@ -21,7 +21,6 @@ struct PredictionOptions {
 ///
 /// Throws IoError naming the file where the data set has no labelled clouds, no scene has a prediction, or a
 /// prediction does not belong to its scene.
-Evaluation score_predictions(const std::string& dataset, const std::string& folder,
-                             const PredictionOptions& options);
+Evaluation score_predictions(const std::string& dataset, const std::string& folder, const PredictionOptions& options);
 
 }  // namespace tubebin

@@ -44,18 +44,17 @@ struct RunScore {
   bool failed = false;        ///< the algorithm gave no result, which counts as zero
   double micro_recall = 0.0;  ///< Equation 1
   SegmentationScores scores;
-  std::vector<SegmentationScores>
-      by_visibility;              ///< kVisibilityClasses of them; empty where the scene is not known
-  std::optional<double> seconds;  ///< modelling time
-  std::string dataset;            ///< the data set's folder; empty where the scene is not known
-  std::string folder;             ///< of a run of model_tubes
-  std::string filtered;           ///< files of the clouds; empty where they were not kept
+  std::vector<SegmentationScores> by_visibility;  ///< kVisibilityClasses of them; empty where the scene is not known
+  std::optional<double> seconds;                  ///< modelling time
+  std::string dataset;                            ///< the data set's folder; empty where the scene is not known
+  std::string folder;                             ///< of a run of model_tubes
+  std::string filtered;                           ///< files of the clouds; empty where they were not kept
   std::string labeled;
 };
 
 /// `matching` is of `contingency`, whose ground-truth ids are labels. `truth` is null where the scene is not
 /// known, `model` empty where there are no centrelines; the model tube of predicted id k is model[k - 1].
-RunScore score_run(const RunKey& key, const Contingency& contingency, const Matching& matching,
-                   const SceneTruth* truth, const std::vector<Centerline>& model);
+RunScore score_run(const RunKey& key, const Contingency& contingency, const Matching& matching, const SceneTruth* truth,
+                   const std::vector<Centerline>& model);
 
 }  // namespace tubebin

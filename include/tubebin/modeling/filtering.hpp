@@ -11,9 +11,9 @@
 namespace tubebin {
 
 struct FilteringOptions {
-  double ratio = 1.0;             ///< of the tube points that stay
-  double bin_margin = 0.002;      ///< metres; points closer to floor or walls go
-  bool remove_outliers = false;   ///< drop lone points, as real scanners make at edges
+  double ratio = 1.0;            ///< of the tube points that stay
+  double bin_margin = 0.002;     ///< metres; points closer to floor or walls go
+  bool remove_outliers = false;  ///< drop lone points, as real scanners make at edges
 };
 
 void describe(Fields& fields, FilteringOptions& options);

@@ -9,10 +9,10 @@
 namespace tubebin {
 
 struct GreedyJoiningOptions {
-  double gap_max = 0.08;             ///< metres between two endpoints
-  double angle_max_deg = 60.0;       ///< between each axis and the line that joins the endpoints
-  double angle_cost = 0.002;         ///< metres a degree
-  double length_max = 0.6;           ///< metres, of a whole tube; the tubes' 0.5 and what the estimates are off
+  double gap_max = 0.08;        ///< metres between two endpoints
+  double angle_max_deg = 60.0;  ///< between each axis and the line that joins the endpoints
+  double angle_cost = 0.002;    ///< metres a degree
+  double length_max = 0.6;      ///< metres, of a whole tube; the tubes' 0.5 and what the estimates are off
 };
 
 void describe(Fields& fields, GreedyJoiningOptions& options);

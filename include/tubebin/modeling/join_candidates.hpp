@@ -13,18 +13,18 @@ bool is_fragment(const TubePiece& piece);
 
 /// One end of a piece. End 2 k is the first node of piece k, end 2 k + 1 its last.
 struct PieceEnd {
-  Vec3 position = Vec3::Zero();  ///< metres
-  Vec3 outward = Vec3::Zero();   ///< unit, along the last cylinder
+  Vec3 position = Vec3::Zero();     ///< metres
+  Vec3 outward = Vec3::Zero();      ///< unit, along the last cylinder
   double direction_variance = 0.0;  ///< of `outward`, rad^2 an axis
-  double seen_free = 0.0;        ///< part of the place just beyond it that the scanner saw to be empty
-  double hidden_reach = 0.0;     ///< how far the tube could go on unseen, metres
+  double seen_free = 0.0;           ///< part of the place just beyond it that the scanner saw to be empty
+  double hidden_reach = 0.0;        ///< how far the tube could go on unseen, metres
 };
 
 /// Two ends joined by a bridge that the scanner could not see.
 struct JoinCandidate {
-  std::uint32_t end_a = 0, end_b = 0;  ///< end_a < end_b, of different pieces
-  double cost = 0.0;                   ///< nats: -log of how much likelier the scan is with the join than without
-  std::vector<Vec3> bridge;            ///< its centreline, from end_a's position to end_b's
+  std::uint32_t end_a = 0, end_b = 0;   ///< end_a < end_b, of different pieces
+  double cost = 0.0;                    ///< nats: -log of how much likelier the scan is with the join than without
+  std::vector<Vec3> bridge;             ///< its centreline, from end_a's position to end_b's
   std::vector<std::uint32_t> absorbed;  ///< fragments that lie on it, which the join explains
 };
 
@@ -37,8 +37,8 @@ std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, cons
 
 /// Every pair of ends whose join the evidence does not rule out, cheapest first. `length_limit`: the longest that two
 /// pieces and their bridge may be together, metres.
-std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces,
-                                                const std::vector<PieceEnd>& ends, const OcclusionTest& occlusion,
-                                                double bending_rate, double length_limit);
+std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
+                                                const OcclusionTest& occlusion, double bending_rate,
+                                                double length_limit);
 
 }  // namespace tubebin

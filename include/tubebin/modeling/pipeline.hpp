@@ -40,10 +40,10 @@ struct ModelingResult {
   std::vector<std::uint32_t> source;  ///< of each filtered point, its index in the input
   std::vector<Label> labels;          ///< of each filtered point: k for tubes[k - 1], 0 where it belongs to none
   std::vector<TubeModel> tubes;
-  double radius = 0.0;                ///< metres: as given, or as estimated
-  double tube_length = 0.0;           ///< metres: as given, or as estimated; 0 where the tubes have no common length
-  double noise = 0.0;                 ///< metres, standard deviation of the points' distances to the fitted surfaces
-  double spacing = 0.0;               ///< metres between neighbouring filtered points
+  double radius = 0.0;       ///< metres: as given, or as estimated
+  double tube_length = 0.0;  ///< metres: as given, or as estimated; 0 where the tubes have no common length
+  double noise = 0.0;        ///< metres, standard deviation of the points' distances to the fitted surfaces
+  double spacing = 0.0;      ///< metres between neighbouring filtered points
   StageSeconds seconds;
 };
 

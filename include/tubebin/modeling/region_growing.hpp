@@ -9,12 +9,12 @@
 namespace tubebin {
 
 struct RegionGrowingOptions {
-  int neighbors = 20;                 ///< of a point, for growing
-  double smoothness_deg = 12.0;       ///< largest angle between neighbours' normals in one region
-  double curvature_max = 0.2;         ///< surface variation up to which a point's neighbours are looked at
-  int region_size_min = 20;           ///< points
-  int ransac_iterations = 100;        ///< a cylinder
-  double inlier_distance = 0.15;      ///< of the radius: how far a cylinder's points may be off its surface
+  int neighbors = 20;             ///< of a point, for growing
+  double smoothness_deg = 12.0;   ///< largest angle between neighbours' normals in one region
+  double curvature_max = 0.2;     ///< surface variation up to which a point's neighbours are looked at
+  int region_size_min = 20;       ///< points
+  int ransac_iterations = 100;    ///< a cylinder
+  double inlier_distance = 0.15;  ///< of the radius: how far a cylinder's points may be off its surface
 };
 
 void describe(Fields& fields, RegionGrowingOptions& options);

@@ -14,8 +14,8 @@ namespace tubebin {
 class ViewProjection {
  public:
   struct Image {
-    float u, v;    ///< position in the plane
-    float range;   ///< distance from the viewpoint, metres
+    float u, v;   ///< position in the plane
+    float range;  ///< distance from the viewpoint, metres
   };
 
   /// The view axis is the sensor's z axis, or, where the points do not lie in front of it (a pose that states a

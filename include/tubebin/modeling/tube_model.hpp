@@ -22,9 +22,9 @@ struct TubePiece {
 
 /// A tube: cylinders in a row, a joint between consecutive ones.
 struct TubeModel {
-  std::vector<Vec3> nodes;     ///< cylinder i reaches from nodes[i] to nodes[i + 1]; metres, world frame
-  std::vector<bool> bridged;   ///< of cylinder i: it spans a stretch without points, from one piece to the next
-  double radius = 0.0;         ///< metres
+  std::vector<Vec3> nodes;    ///< cylinder i reaches from nodes[i] to nodes[i + 1]; metres, world frame
+  std::vector<bool> bridged;  ///< of cylinder i: it spans a stretch without points, from one piece to the next
+  double radius = 0.0;        ///< metres
 
   double length() const;
 };

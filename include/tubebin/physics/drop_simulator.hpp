@@ -12,29 +12,29 @@ namespace tubebin {
 
 /// Physics settings; the defaults were measured (docs/physics.md).
 struct PhysicsOptions {
-  double gravity = 9.81;               ///< m/s^2
-  double time_step = 0.004;            ///< seconds
-  int solver_iterations = 30;          ///< of ODE's quickstep; doubled for each check at the end
+  double gravity = 9.81;                ///< m/s^2
+  double time_step = 0.004;             ///< seconds
+  int solver_iterations = 30;           ///< of ODE's quickstep; doubled for each check at the end
   double solver_over_relaxation = 1.6;  ///< SOR factor of quickstep
-  double contact_erp = 0.2;            ///< share of an interpenetration that one step corrects
-  double contact_cfm = 1e-5;           ///< softness of a contact, s/kg
-  double contact_layer = 0.0001;       ///< metres of interpenetration left alone, so that contacts persist
-  double correcting_speed_max = 0.5;   ///< m/s
-  double friction_tube = 1.16;         ///< Coulomb coefficient, tube on tube
-  double friction_bin = 1.16;          ///< Coulomb coefficient, tube on bin
-  double rolling_resistance = 0.0008;  ///< metres: the torque of a contact that resists rolling, by its force
-  double damping_linear = 0.002;       ///< share of the linear velocity lost in a step
-  double damping_angular = 0.01;       ///< share of the angular velocity lost in a step
-  double speed_max = 2.5;              ///< m/s
-  double spawn_clearance = 0.005;      ///< metres between spawned tubes, and between them and the rim's height
-  int spawn_tries = 16;                ///< free places looked at for each tube, of which the lowest is taken
-  double rest_speed = 0.01;            ///< m/s
-  double rest_turn_rate = 0.1;         ///< rad/s
-  double rest_window = 0.1;            ///< seconds
-  double check_time = 1.0;             ///< seconds
-  double drift_max = 0.0005;           ///< metres, over check_time
-  double penetration_max = 0.0005;     ///< metres, in a finished scene
-  double time_limit = 15.0;            ///< seconds of simulated time
+  double contact_erp = 0.2;             ///< share of an interpenetration that one step corrects
+  double contact_cfm = 1e-5;            ///< softness of a contact, s/kg
+  double contact_layer = 0.0001;        ///< metres of interpenetration left alone, so that contacts persist
+  double correcting_speed_max = 0.5;    ///< m/s
+  double friction_tube = 1.16;          ///< Coulomb coefficient, tube on tube
+  double friction_bin = 1.16;           ///< Coulomb coefficient, tube on bin
+  double rolling_resistance = 0.0008;   ///< metres: the torque of a contact that resists rolling, by its force
+  double damping_linear = 0.002;        ///< share of the linear velocity lost in a step
+  double damping_angular = 0.01;        ///< share of the angular velocity lost in a step
+  double speed_max = 2.5;               ///< m/s
+  double spawn_clearance = 0.005;       ///< metres between spawned tubes, and between them and the rim's height
+  int spawn_tries = 16;                 ///< free places looked at for each tube, of which the lowest is taken
+  double rest_speed = 0.01;             ///< m/s
+  double rest_turn_rate = 0.1;          ///< rad/s
+  double rest_window = 0.1;             ///< seconds
+  double check_time = 1.0;              ///< seconds
+  double drift_max = 0.0005;            ///< metres, over check_time
+  double penetration_max = 0.0005;      ///< metres, in a finished scene
+  double time_limit = 15.0;             ///< seconds of simulated time
 
   friend bool operator==(const PhysicsOptions&, const PhysicsOptions&) = default;
 };
@@ -57,17 +57,17 @@ const char* to_string(DropFailure failure);
 
 /// What the simulation measured.
 struct DropFigures {
-  int steps = 0;                      ///< simulation steps, the check at the end included
+  int steps = 0;  ///< simulation steps, the check at the end included
   double simulated_seconds = 0.0;
-  double deepest_penetration = 0.0;   ///< metres, in the finished scene
-  double largest_drift = 0.0;         ///< metres, over the check at the end
+  double deepest_penetration = 0.0;  ///< metres, in the finished scene
+  double largest_drift = 0.0;        ///< metres, over the check at the end
 };
 
 struct DropResult {
   DropFailure failure = DropFailure::none;
-  std::string detail;                 ///< "tube 3 left the bin", empty without a failure
+  std::string detail;  ///< "tube 3 left the bin", empty without a failure
   std::vector<PlacedTube> tubes;
-  std::vector<Contact> contacts;      ///< of the finished scene
+  std::vector<Contact> contacts;  ///< of the finished scene
   DropFigures figures;
 };
 

@@ -17,8 +17,8 @@ struct Image {
   std::vector<std::uint8_t> rgb;
 
   Color pixel(int column, int row) const {
-    const std::uint8_t* p = &rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-                                      static_cast<std::size_t>(column))];
+    const std::uint8_t* p =
+        &rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column))];
     return static_cast<Color>(p[0]) << 16 | static_cast<Color>(p[1]) << 8 | static_cast<Color>(p[2]);
   }
 };

@@ -20,9 +20,7 @@ class Camera {
   /// axis is one: the point at scanner + t * direction has depth t.
   Vec3 direction_in_world(double x, double y) const;
   /// As above, through the centre of a pixel.
-  Vec3 pixel_direction_in_world(int column, int row) const {
-    return direction_in_world(column + 0.5, row + 0.5);
-  }
+  Vec3 pixel_direction_in_world(int column, int row) const { return direction_in_world(column + 0.5, row + 0.5); }
 
   /// Image position in pixels of a point in the scanner's frame; its depth z must not be zero.
   Eigen::Vector2d project(const Vec3& p_in_scanner) const;

@@ -36,14 +36,14 @@ enum class ScanRegion {
 
 /// A pinhole depth camera. Scanner frame: x to the right of the image, y down, z along the view.
 struct Scanner {
-  Vec3 position = {0.0, 0.0, 2.0};              ///< metres, world frame
-  Vec3 rotation_deg = Vec3::Zero();             ///< roll, pitch, yaw (degrees, about world x, y, z in that order),
-                                                ///< applied to a scanner that looks straight down, image x along +x
-  int width = 1920;                             ///< pixels
-  int height = 1200;                            ///< pixels
-  double horizontal_fov_deg = degrees(1.22);    ///< degrees, between the image's left and right border
-  double range_min = 0.1;                       ///< metres, along the optical axis, as a camera's near plane
-  double range_max = 2.6;                       ///< metres, along the optical axis, inclusive
+  Vec3 position = {0.0, 0.0, 2.0};            ///< metres, world frame
+  Vec3 rotation_deg = Vec3::Zero();           ///< roll, pitch, yaw (degrees, about world x, y, z in that order),
+                                              ///< applied to a scanner that looks straight down, image x along +x
+  int width = 1920;                           ///< pixels
+  int height = 1200;                          ///< pixels
+  double horizontal_fov_deg = degrees(1.22);  ///< degrees, between the image's left and right border
+  double range_min = 0.1;                     ///< metres, along the optical axis, as a camera's near plane
+  double range_max = 2.6;                     ///< metres, along the optical axis, inclusive
   ScanRegion region = ScanRegion::bin;
 
   Pose world_from_scanner() const;

@@ -10,15 +10,15 @@
 namespace tubebin {
 
 struct TubeOptions {
-  double radius = 0.0125;           ///< r, metres
-  double length = 0.5;              ///< l, metres
+  double radius = 0.0125;             ///< r, metres
+  double length = 0.5;                ///< l, metres
   double cylinder_length_min = 0.02;  ///< cl_min, metres
-  int cylinder_count_min = 5;       ///< cn_min
-  int cylinder_count_max = 10;      ///< cn_max
-  double bend_angle_min_deg = 0.0;  ///< theta_min, degrees
-  double bend_angle_max_deg = 30.0;  ///< theta_max, degrees
-  double wall_thickness = 0.0;      ///< metres; 0: solid
-  double mass = 0.055;              ///< kilograms; the real PVC tubes weigh 0.055, the published simulation took 0.5
+  int cylinder_count_min = 5;         ///< cn_min
+  int cylinder_count_max = 10;        ///< cn_max
+  double bend_angle_min_deg = 0.0;    ///< theta_min, degrees
+  double bend_angle_max_deg = 30.0;   ///< theta_max, degrees
+  double wall_thickness = 0.0;        ///< metres; 0: solid
+  double mass = 0.055;                ///< kilograms; the real PVC tubes weigh 0.055, the published simulation took 0.5
 
   friend bool operator==(const TubeOptions&, const TubeOptions&) = default;
 };
@@ -33,8 +33,8 @@ std::vector<double> generate_lengths(int count, double length, double cylinder_l
 
 /// Algorithm 3: endpoints of consecutive cylinders, from the origin, before the random translation
 /// (spawning chooses the translation). `lengths.size() + 1` points, metres.
-std::vector<Vec3> generate_endpoints(const std::vector<double>& lengths, double bend_angle_min,
-                                     double bend_angle_max, Random& random);
+std::vector<Vec3> generate_endpoints(const std::vector<double>& lengths, double bend_angle_min, double bend_angle_max,
+                                     Random& random);
 
 /// Algorithm 1: `count` tubes, each in a frame with its first endpoint at the origin.
 std::vector<Tube> generate_tubes(int count, const TubeOptions& options, Random& random);

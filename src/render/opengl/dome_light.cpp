@@ -24,8 +24,7 @@ std::vector<Eigen::Vector3f> sky_directions() {
 
 }  // namespace
 
-DomeLight::DomeLight(const Ball& ball, const std::function<void()>& draw_casters)
-    : scene_radius_(ball.radius) {
+DomeLight::DomeLight(const Ball& ball, const std::function<void()>& draw_casters) : scene_radius_(ball.radius) {
   ShadowMap map(kMapPixels);
   for (const Eigen::Vector3f& to_light : sky_directions()) {
     const Eigen::Matrix4f from_world = map_from_world(to_light, ball);

@@ -15,8 +15,7 @@ inline void draw(const Mesh& mesh) {
   glNormalPointer(GL_FLOAT, sizeof(Vertex), mesh.vertices.front().normal.data());
   glEnableClientState(GL_TEXTURE_COORD_ARRAY);
   glTexCoordPointer(1, GL_FLOAT, sizeof(Vertex), &mesh.vertices.front().dome_light);
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.indices.size()), GL_UNSIGNED_INT,
-                 mesh.indices.data());
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.indices.size()), GL_UNSIGNED_INT, mesh.indices.data());
 }
 
 }  // namespace tubebin

@@ -25,8 +25,7 @@ void set_camera(const Camera& camera, const Scanner& scanner, const PixelWindow&
   glMatrixMode(GL_PROJECTION);
   glLoadIdentity();
   glFrustum(left * metres_per_pixel, (left + window.width) * metres_per_pixel,
-            -(top + window.height) * metres_per_pixel, -top * metres_per_pixel, near,
-            scanner.range_max + kFarMargin);
+            -(top + window.height) * metres_per_pixel, -top * metres_per_pixel, near, scanner.range_max + kFarMargin);
   Eigen::Matrix4d eye_from_world = Eigen::Matrix4d::Identity();
   eye_from_world.topLeftCorner<3, 3>() =
       Vec3(1.0, -1.0, -1.0).asDiagonal() * camera.world_from_scanner().linear().transpose();

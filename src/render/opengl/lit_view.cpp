@@ -99,8 +99,7 @@ class Casters {
  public:
   Casters(const Scene& scene, const View& view) {
     meshes_.push_back(bin_walls(scene.bin, Wall::solid, view, kCasterFineness));
-    for (const PlacedTube& tube : scene.tubes)
-      meshes_.push_back(tube_mesh(tube, Vec3::Zero(), kCasterFineness));
+    for (const PlacedTube& tube : scene.tubes) meshes_.push_back(tube_mesh(tube, Vec3::Zero(), kCasterFineness));
   }
 
   void draw_all() const {
@@ -113,8 +112,7 @@ class Casters {
 
 class LitView {
  public:
-  LitView(const Scene& scene, const View& view, const Eigen::AlignedBox3d& bounds,
-          const OffscreenContext& context)
+  LitView(const Scene& scene, const View& view, const Eigen::AlignedBox3d& bounds, const OffscreenContext& context)
       : scene_(scene),
         view_(view),
         bounds_(bounds),
@@ -142,16 +140,13 @@ class LitView {
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     const std::vector<Color> colors = label_colors(scene_.tubes.size());
-    draw_lit(bin_walls(scene_.bin, Wall::solid, view_, kFineness), colors[0],
-             {.alpha = 1.0F, .highlight = 0.02F});
+    draw_lit(bin_walls(scene_.bin, Wall::solid, view_, kFineness), colors[0], {.alpha = 1.0F, .highlight = 0.02F});
     for (std::size_t i = 0; i < scene_.tubes.size(); ++i)
-      draw_lit(tube_mesh(scene_.tubes[i], Vec3::Zero(), kFineness), colors[i + 1],
-               {.alpha = 1.0F, .highlight = 0.10F});
+      draw_lit(tube_mesh(scene_.tubes[i], Vec3::Zero(), kFineness), colors[i + 1], {.alpha = 1.0F, .highlight = 0.10F});
     draw_table();
     glEnable(GL_CULL_FACE);
     glDepthMask(GL_FALSE);
-    draw_lit(bin_walls(scene_.bin, Wall::glass, view_, kFineness), colors[0],
-             {.alpha = 0.22F, .highlight = 0.0F});
+    draw_lit(bin_walls(scene_.bin, Wall::glass, view_, kFineness), colors[0], {.alpha = 0.22F, .highlight = 0.0F});
     glDepthMask(GL_TRUE);
     glDisable(GL_CULL_FACE);
   }

@@ -22,8 +22,7 @@ GLuint compile(GLenum kind, const char* source) {
 
 }  // namespace
 
-ShaderProgram::ShaderProgram(const char* vertex_source, const char* fragment_source)
-    : program_(glCreateProgram()) {
+ShaderProgram::ShaderProgram(const char* vertex_source, const char* fragment_source) : program_(glCreateProgram()) {
   for (const auto& [kind, source] :
        {std::pair{GL_VERTEX_SHADER, vertex_source}, std::pair{GL_FRAGMENT_SHADER, fragment_source}}) {
     const GLuint shader = compile(static_cast<GLenum>(kind), source);

@@ -16,9 +16,7 @@ class ShaderProgram {
   void use() const { glUseProgram(program_); }
   void set(const char* uniform, int value) const { glUniform1i(place(uniform), value); }
   void set(const char* uniform, float value) const { glUniform1f(place(uniform), value); }
-  void set(const char* uniform, const Eigen::Vector3f& value) const {
-    glUniform3fv(place(uniform), 1, value.data());
-  }
+  void set(const char* uniform, const Eigen::Vector3f& value) const { glUniform3fv(place(uniform), 1, value.data()); }
   void set(const char* uniform, const Eigen::Matrix4f& value) const {
     glUniformMatrix4fv(place(uniform), 1, GL_FALSE, value.data());
   }
