@@ -5,6 +5,7 @@
 #include "tubebin/cloud/label_colors.hpp"
 #include "tubebin/render/preview.hpp"
 #include "tubebin/scan/scanner.hpp"
+#include "tubebin/scan/visibility.hpp"
 
 namespace tubebin {
 namespace {
@@ -34,6 +35,15 @@ class StageClock {
 
 }  // namespace
 
+PileRelations relate_pile(const Scene& scene) {
+  const std::vector<std::vector<SeenPixel>> views = view_tubes_alone(scene);
+  PileRelations relations;
+  for (const auto& view : views) relations.amodal_pixels.push_back(view.size());
+  relations.occlusions = find_occlusions(scene, views);
+  relations.above = find_above(scene.tubes);
+  return relations;
+}
+
 std::uint64_t attempt_seed(const DatasetConfig& config, const SceneId& id, int attempt) {
   std::uint64_t set = 0;
   for (const char letter : id.set) set = derive_seed({set, static_cast<std::uint64_t>(letter)});
@@ -59,6 +69,8 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
   const Scene scene{.bin = config.bin, .scanner = config.scanner, .tubes = std::move(drop.tubes)};
   Scan scanned = scan(scene);
   clock.end_stage("scan");
+  PileRelations relations = relate_pile(scene);
+  clock.end_stage("relate");
 
   result.content.record = {.id = id.name(),
                            .seed = attempt_seed(config, id, attempt),
@@ -66,7 +78,8 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
                            .window = scanned.window,
                            .colors = label_colors(scene.tubes.size()),
                            .tube_pixels = std::move(scanned.tube_pixels),
-                           .contacts = std::move(drop.contacts)};
+                           .contacts = std::move(drop.contacts),
+                           .relations = std::move(relations)};
   result.content.cloud = std::move(scanned.cloud);
 
   if (config.output.preview) {

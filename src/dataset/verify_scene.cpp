@@ -6,6 +6,7 @@
 
 #include "surface_distance.hpp"
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/dataset/generate_scene.hpp"
 #include "tubebin/dataset/verify_dataset.hpp"
 #include "tubebin/scene/scene_json.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
@@ -142,6 +143,12 @@ void check_held(const SceneRecord& scene, Problems& problems) {
     if (!held.contains(k)) problems.push_back(fmt::format("tube {} floats: no contacts lead from it to the bin", k));
 }
 
+void check_relations(const SceneRecord& scene, Problems& problems) {
+  if (!scene.relations) problems.push_back("scene.json does not say who covers whom");
+  else if (*scene.relations != relate_pile(scene.scene))
+    problems.push_back("scene.json's amodal pixels, occlusions or entanglement are not those of its tubes");
+}
+
 void check_content(const std::string& path, const DatasetConfig& config, const SceneId& id,
                    const ManifestRecord& record, Problems& problems) {
   const SceneRecord scene = read_scene_json(path + "/scene.json");
@@ -150,6 +157,7 @@ void check_content(const std::string& path, const DatasetConfig& config, const S
   check_tubes_txt(path + "/tubes.txt", scene, problems);
   check_contacts(scene, config, problems);
   check_held(scene, problems);
+  check_relations(scene, problems);
   if (record.physics.largest_drift > config.physics.drift_max)
     problems.push_back(
         fmt::format("a tube moved by {:.3f} mm in the check at the end", record.physics.largest_drift * 1e3));

@@ -10,9 +10,6 @@
 namespace tubebin {
 namespace {
 
-/// Metres. A floor at exactly range_max is within range whatever the rounding of a ray's direction.
-constexpr double kDepthTolerance = 1e-9;
-
 /// Embree walks its tree in single precision with rays from the origin: a direction and a bound are each off
 /// by at most 2^-24 of the distance, the box test by a few times that. Bounds grow by 32 x 2^-24 of the
 /// farthest corner's distance (4 micrometres at 2 m), so that no solid is missed; what is hit is then decided
@@ -98,7 +95,8 @@ RTCRayHit make_ray(const Vec3& direction, double depth_min, double depth_max) {
   return hit;
 }
 
-/// Where a body that consists of convex solids first begins or ends at depth_min or beyond.
+}  // namespace
+
 double first_boundary(std::vector<Interval>& parts, double depth_min) {
   std::ranges::sort(parts, {}, &Interval::begin);
   double first = std::numeric_limits<double>::infinity();
@@ -110,8 +108,6 @@ double first_boundary(std::vector<Interval>& parts, double depth_min) {
   }
   return first;
 }
-
-}  // namespace
 
 RayCaster::RayCaster(SceneSolids solids, double depth_min, double depth_max)
     : solids_(std::move(solids)),

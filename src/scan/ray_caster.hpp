@@ -7,12 +7,19 @@
 
 namespace tubebin {
 
+/// Metres. A floor at exactly range_max is within range whatever the rounding of a ray's direction.
+constexpr double kDepthTolerance = 1e-9;
+
 struct Hit {
   double depth = std::numeric_limits<double>::infinity();  ///< along the optical axis, metres; infinity: nothing
   Label label = 0;
 
   bool found() const { return depth < std::numeric_limits<double>::infinity(); }
 };
+
+/// Where a body that consists of convex solids first begins or ends at depth_min or beyond; `parts`, its solids along the
+/// ray, are sorted.
+double first_boundary(std::vector<Interval>& parts, double depth_min);
 
 class RayCaster {
  public:

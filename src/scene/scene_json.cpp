@@ -41,6 +41,16 @@ OrderedJson scanner_to_json(Scanner scanner, const PixelWindow& window) {
   return json;
 }
 
+OrderedJson centerline_to_json(const PlacedTube& placed) {
+  OrderedJson paths = OrderedJson::array();
+  for (const std::vector<int>& path : centerline_paths(placed.tube)) {
+    OrderedJson points = OrderedJson::array();
+    for (const int node : path) points.push_back(to_json(placed.node_in_world(node)));
+    paths.push_back(std::move(points));
+  }
+  return paths;
+}
+
 OrderedJson tube_to_json(const PlacedTube& placed, std::size_t label, Color color, std::size_t visible_pixels) {
   const Tube& tube = placed.tube;
   OrderedJson nodes = OrderedJson::array(), nodes_in_world = OrderedJson::array(), cylinders = OrderedJson::array();
@@ -61,6 +71,7 @@ OrderedJson tube_to_json(const PlacedTube& placed, std::size_t label, Color colo
           {"cylinders", std::move(cylinders)},
           {"pose", to_json(placed.world_from_tube)},
           {"nodes_in_world", std::move(nodes_in_world)},
+          {"centerline", centerline_to_json(placed)},
           {"visible_pixels", visible_pixels},
           {"visible", visible_pixels > 0}};
 }
@@ -71,6 +82,27 @@ OrderedJson contact_to_json(const Contact& contact) {
           {"position", to_json(contact.position)},
           {"normal", to_json(contact.normal)},
           {"depth", to_json(contact.depth)}};
+}
+
+double visible_fraction(std::size_t visible, std::size_t amodal) {
+  return amodal > 0 ? static_cast<double>(visible) / static_cast<double>(amodal) : 0.0;
+}
+
+void add_relations(const SceneRecord& record, const PileRelations& relations, OrderedJson& json) {
+  for (std::size_t k = 0; k < record.scene.tubes.size(); ++k) {
+    OrderedJson& tube = json["tubes"][k];
+    tube["amodal_pixels"] = relations.amodal_pixels[k];
+    tube["visible_fraction"] = visible_fraction(record.tube_pixels[k], relations.amodal_pixels[k]);
+    tube["liftable"] = relations.is_liftable(static_cast<Label>(k + 1));
+  }
+  json["occlusions"] = OrderedJson::array();
+  for (const Occlusion& occlusion : relations.occlusions)
+    json["occlusions"].push_back(
+        {{"front", occlusion.front}, {"behind", occlusion.behind}, {"pixels", occlusion.pixels}});
+  OrderedJson above = OrderedJson::array();
+  for (const Above& pair : relations.above) above.push_back({{"upper", pair.upper}, {"lower", pair.lower}});
+  json["entanglement"] = {{"above", std::move(above)},
+                          {"groups", entangled_groups(record.scene.tubes.size(), relations.above)}};
 }
 
 // ---- reading
@@ -135,6 +167,17 @@ void check_nodes_in_world(const JsonPlace& place, const PlacedTube& placed) {
   }
 }
 
+void check_centerline(const JsonPlace& place, const PlacedTube& placed) {
+  const std::vector<std::vector<int>> paths = centerline_paths(placed.tube);
+  const std::vector<JsonPlace> given = place.elements(paths.size());
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const std::vector<JsonPlace> points = given[i].elements(paths[i].size());
+    for (std::size_t j = 0; j < points.size(); ++j)
+      if (!((points[j].vector() - placed.node_in_world(paths[i][j])).norm() <= kDistanceTolerance))
+        points[j].fail("the node of the tube's path that stands here");
+  }
+}
+
 PlacedTube read_tube(const JsonPlace& place, std::size_t label) {
   for (const char* key : {"id", "label"})
     if (place.at(key).whole(0, std::numeric_limits<Label>::max()) != label)
@@ -151,6 +194,7 @@ PlacedTube read_tube(const JsonPlace& place, std::size_t label) {
   placed.world_from_tube = place.at("pose").pose();
   place.at("length").expect_near(tube.length(), kDistanceTolerance);
   check_nodes_in_world(place.at("nodes_in_world"), placed);
+  if (place.has("centerline")) check_centerline(place.at("centerline"), placed);
   return placed;
 }
 
@@ -171,11 +215,65 @@ Contact read_contact(const JsonPlace& place, std::size_t tube_count) {
   return contact;
 }
 
+Label read_tube_label(const JsonPlace& place, std::size_t tube_count, std::uint64_t lowest = 1) {
+  return static_cast<Label>(place.whole(lowest, tube_count));
+}
+
+Occlusion read_occlusion(const JsonPlace& place, std::size_t tube_count) {
+  Occlusion occlusion;
+  occlusion.front = read_tube_label(place.at("front"), tube_count, 0);
+  occlusion.behind = read_tube_label(place.at("behind"), tube_count);
+  occlusion.pixels = place.at("pixels").whole(1, std::numeric_limits<std::uint32_t>::max());
+  if (occlusion.front == occlusion.behind) place.at("front").fail("another body than behind");
+  return occlusion;
+}
+
+Above read_above(const JsonPlace& place, std::size_t tube_count) {
+  const Above pair = {read_tube_label(place.at("upper"), tube_count), read_tube_label(place.at("lower"), tube_count)};
+  if (pair.upper == pair.lower) place.at("upper").fail("another tube than lower");
+  return pair;
+}
+
+void check_groups(const JsonPlace& place, const std::vector<LabelGroup>& expected) {
+  std::vector<LabelGroup> groups;
+  for (const JsonPlace& group : place.elements()) {
+    groups.emplace_back();
+    for (const JsonPlace& label : group.elements())
+      groups.back().push_back(static_cast<Label>(label.whole(1, std::numeric_limits<Label>::max())));
+  }
+  if (groups != expected) place.fail("the groups that follow from above");
+}
+
+/// What the file says of the pile; tubes' values that derive from it must agree.
+PileRelations read_relations(const JsonPlace& root, const std::vector<std::size_t>& visible_pixels) {
+  const std::size_t tube_count = visible_pixels.size();
+  PileRelations relations;
+  for (const JsonPlace& occlusion : root.at("occlusions").elements())
+    relations.occlusions.push_back(read_occlusion(occlusion, tube_count));
+  const JsonPlace entanglement = root.at("entanglement");
+  for (const JsonPlace& pair : entanglement.at("above").elements())
+    relations.above.push_back(read_above(pair, tube_count));
+  check_groups(entanglement.at("groups"), entangled_groups(tube_count, relations.above));
+  const std::vector<JsonPlace> tubes = root.at("tubes").elements(tube_count);
+  for (std::size_t k = 0; k < tube_count; ++k) {
+    relations.amodal_pixels.push_back(tubes[k].at("amodal_pixels").whole(0, std::numeric_limits<std::uint32_t>::max()));
+    tubes[k]
+        .at("visible_fraction")
+        .expect_near(visible_fraction(visible_pixels[k], relations.amodal_pixels[k]), kDistanceTolerance);
+    if (tubes[k].at("liftable").flag() != relations.is_liftable(static_cast<Label>(k + 1)))
+      tubes[k].at("liftable").fail("whether no tube is above it");
+  }
+  return relations;
+}
+
 void check_consistent(const SceneRecord& record) {
   const std::size_t tubes = record.scene.tubes.size();
   if (record.colors.size() != tubes + 1 || record.tube_pixels.size() != tubes)
     throw std::invalid_argument(fmt::format("scene {} of {} tubes with {} colours and {} pixel counts", record.id,
                                             tubes, record.colors.size(), record.tube_pixels.size()));
+  if (record.relations && record.relations->amodal_pixels.size() != tubes)
+    throw std::invalid_argument(fmt::format("scene {} of {} tubes with {} amodal pixel counts", record.id, tubes,
+                                            record.relations->amodal_pixels.size()));
 }
 
 }  // namespace
@@ -195,6 +293,7 @@ std::string format_scene_json(const SceneRecord& record) {
   for (std::size_t k = 0; k < record.scene.tubes.size(); ++k)
     json["tubes"].push_back(tube_to_json(record.scene.tubes[k], k + 1, record.colors[k + 1], record.tube_pixels[k]));
   for (const Contact& contact : record.contacts) json["contacts"].push_back(contact_to_json(contact));
+  if (record.relations) add_relations(record, *record.relations, json);
   return format_json(json);
 }
 
@@ -216,6 +315,7 @@ SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
   }
   for (const JsonPlace& contact : root.at("contacts").elements())
     record.contacts.push_back(read_contact(contact, record.scene.tubes.size()));
+  if (root.has("occlusions") || root.has("entanglement")) record.relations = read_relations(root, record.tube_pixels);
   return record;
 }
 

@@ -40,6 +40,11 @@ SceneRecord make_record(int tube_count) {
   record.colors = label_colors(static_cast<std::size_t>(tube_count));
   if (tube_count > 1)
     record.contacts = {{0, 1, {0.1, 0.2, 0.0}, {0, 0, 1}, 1e-4}, {1, 2, {0, 0, 0.025}, {0, 0, 1}, -1e-5}};
+  record.relations.emplace().amodal_pixels.assign(record.tube_pixels.size(), 12345);
+  if (tube_count > 1) {
+    record.relations->occlusions = {{0, 1, 17}, {2, 1, 300}};
+    record.relations->above = {{1, 2}, {2, 1}};
+  }
   return record;
 }
 
@@ -67,7 +72,19 @@ TEST(SceneJson, EverythingReadsBackBitByBit) {
   ASSERT_EQ(back.contacts.size(), 2U);
   EXPECT_EQ(back.contacts[1].depth, -1e-5);
   EXPECT_EQ(back.contacts[1].position, record.contacts[1].position);
+  EXPECT_EQ(back.relations, record.relations);
   EXPECT_EQ(format_scene_json(back), format_scene_json(record));
+}
+
+TEST(SceneJson, FilesOfTheFirstVersionAreReadWithoutRelations) {
+  json scene = json::parse(format_scene_json(make_record(3)));
+  scene.erase("occlusions");
+  scene.erase("entanglement");
+  for (json& tube : scene["tubes"])
+    for (const char* key : {"centerline", "amodal_pixels", "visible_fraction", "liftable"}) tube.erase(key);
+  const SceneRecord record = parse(scene.dump());
+  EXPECT_FALSE(record.relations);
+  EXPECT_EQ(record.tube_pixels, make_record(3).tube_pixels);
 }
 
 TEST(SceneJson, ASceneWithoutTubesReadsBack) {
@@ -128,6 +145,9 @@ TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   EXPECT_EQ(keys(scene["scanner"]), keys(top["scanner"]["properties"]));
   EXPECT_EQ(keys(scene["tubes"][0]), keys(schema["$defs"]["tube"]["properties"]));
   EXPECT_EQ(keys(scene["contacts"][0]), keys(schema["$defs"]["contact"]["properties"]));
+  EXPECT_EQ(keys(scene["occlusions"][0]), keys(schema["$defs"]["occlusion"]["properties"]));
+  EXPECT_EQ(keys(scene["entanglement"]), keys(top["entanglement"]["properties"]));
+  EXPECT_EQ(keys(scene["entanglement"]["above"][0]), keys(schema["$defs"]["above"]["properties"]));
 }
 
 std::string error_of(const std::string& text) {
@@ -187,6 +207,13 @@ TEST(SceneJson, ValuesThatCannotBeAreRefused) {
   EXPECT_THAT(error_with("/tubes/1/nodes_in_world/0", {9, 9, 9}), HasSubstr("follows from pose and nodes"));
   EXPECT_THAT(error_with("/tubes/1/visible", false), HasSubstr("visible_pixels"));
   EXPECT_THAT(error_with("/contacts/0/label_b", 7), HasSubstr("/contacts/0/label_b: 7"));
+  EXPECT_THAT(error_with("/tubes/1/centerline/0/0", {9, 9, 9}), HasSubstr("/tubes/1/centerline/0/0"));
+  EXPECT_THAT(error_with("/tubes/1/visible_fraction", 0.5), HasSubstr("/tubes/1/visible_fraction: 0.5"));
+  EXPECT_THAT(error_with("/tubes/0/liftable", true), HasSubstr("whether no tube is above it"));
+  EXPECT_THAT(error_with("/occlusions/0/front", 1), HasSubstr("another body than behind"));
+  EXPECT_THAT(error_with("/occlusions/0/behind", 4), HasSubstr("/occlusions/0/behind: 4"));
+  EXPECT_THAT(error_with("/entanglement/above/0/upper", 3), HasSubstr("/entanglement/groups"));
+  EXPECT_THAT(error_without("", "entanglement"), HasSubstr("/entanglement: missing"));
 }
 
 TEST(SceneJson, KeysOfLaterVersionsAreLeftAlone) { EXPECT_EQ(error_with("/tubes/0/dent", 3), "no error"); }

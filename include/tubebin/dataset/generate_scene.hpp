@@ -18,6 +18,9 @@ struct GeneratedScene {
 /// Seed of the attempt (from 0) at the scene.
 std::uint64_t attempt_seed(const DatasetConfig& config, const SceneId& id, int attempt);
 
+/// Who covers whom in the scanner's image, and who lies on whom.
+PileRelations relate_pile(const Scene& scene);
+
 /// Generates, drops and scans. The result depends on the arguments (and the tool's version) alone.
 GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, int attempt);
 

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "tubebin/cloud/cloud.hpp"
-#include "tubebin/scene/scene.hpp"
+#include "tubebin/scene/pile_relations.hpp"
 
 namespace tubebin {
 
@@ -20,6 +21,7 @@ struct SceneRecord {
   std::vector<Color> colors;             ///< of label 0 (bin) and every tube
   std::vector<std::size_t> tube_pixels;  ///< visible pixels of tube k at [k - 1]
   std::vector<Contact> contacts;
+  std::optional<PileRelations> relations;  ///< nothing in files of versions that did not write them
 };
 
 /// JSON text; equal records give equal bytes. Throws std::invalid_argument where the record contradicts
