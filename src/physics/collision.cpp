@@ -135,7 +135,6 @@ std::optional<Touch> touch_box_with_ball(const Box& box, const Vec3& center, dou
 /// A flat end's rim against a box: the rim point that lies deepest and seven more around, which keep a standing
 /// tube upright.
 void add_rim_touches(const Box& box, const Piece& piece, bool at_a, double depth_min, std::vector<Touch>& out) {
-  constexpr int kRimPoints = 8;
   const Vec3 center = at_a ? piece.axis.a : piece.axis.b;
   const Vec3 toward = project_on_box(box, center) - center;
   const double reach = piece.radius - depth_min;
@@ -143,15 +142,33 @@ void add_rim_touches(const Box& box, const Piece& piece, bool at_a, double depth
   const Vec3 radial = toward - toward.dot(piece.direction) * piece.direction;
   const Vec3 u = radial.squaredNorm() > 1e-16 ? Vec3(radial.normalized()) : piece.direction.unitOrthogonal();
   const Vec3 v = piece.direction.cross(u);
-  for (int i = 0; i < kRimPoints; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kRimPoints;
-    const Vec3 rim = center + piece.radius * (std::cos(angle) * u + std::sin(angle) * v);
+  constexpr double kDiagonal = std::numbers::sqrt2 / 2.0;
+  constexpr double kCircle[][2] = {{1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},
+                                   {-1, 0}, {-kDiagonal, -kDiagonal}, {0, -1}, {kDiagonal, -kDiagonal}};
+  for (const auto& [along_u, along_v] : kCircle) {
+    const Vec3 rim = center + piece.radius * (along_u * u + along_v * v);
     if (const auto touch = touch_box_with_ball(box, rim, 0.0, depth_min)) out.push_back(*touch);
   }
 }
 
+/// Whether all of a segment lies before one and the same face of a box.
+bool is_before_one_face(const Box& box, const Segment& segment) {
+  int faces = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto side = [&](const Vec3& point) {
+      return (point[axis] > box.max()[axis]) - (point[axis] < box.min()[axis]);
+    };
+    const int side_a = side(segment.a);
+    if (side_a != side(segment.b)) return false;
+    faces += side_a != 0;
+  }
+  return faces == 1;
+}
+
 /// A piece across a box's edge, as a tube that leans over the wall.
 void add_edge_touch(const Box& box, const Piece& piece, double depth_min, std::vector<Touch>& out) {
+  // There the distance is linear along the axis: least at an end, which joints and rims stand for.
+  if (is_before_one_face(box, piece.axis)) return;
   const auto project = [&](const Vec3& point) { return project_on_box(box, point); };
   const double t = nearest_parameter(piece.axis, project);
   if (is_flat_end(piece, t)) {

@@ -1,5 +1,6 @@
 #include "tubebin/physics/drop_simulator.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/rest_check.hpp"
@@ -12,8 +13,10 @@ namespace {
 /// Bodies at rest may be this far apart and still count as touching: twice what the contact layer leaves.
 constexpr double kTouchingGap = 0.0002;  // metres
 
-/// Checks at the end iterate up to this many times as much as the fall.
-constexpr int kSolverBoostMax = 8;
+/// A stubborn pile is iterated half as much again and again, up to eight times as much as the fall.
+constexpr double kSolverBoost = 1.5;
+constexpr double kSolverBoostMax = 8.0;
+constexpr double kBoostInterval = 0.25;  // seconds
 
 int steps_in(double seconds, const PhysicsOptions& options) {
   return static_cast<int>(std::ceil(seconds / options.time_step));
@@ -27,12 +30,34 @@ DropResult failed(DropFailure failure, std::string detail, DropFigures figures =
   return result;
 }
 
+/// The number of quickstep's iterations, which grows where a pile does not come to rest: what still moves or creeps
+/// under a solver that did not converge may stand under one that does.
+class SolverEffort {
+ public:
+  SolverEffort(RigidWorld& world, const PhysicsOptions& options) : world_(world), options_(options) {}
+
+  void boost() {
+    boost_ = std::min(kSolverBoost * boost_, kSolverBoostMax);
+    world_.set_solver_iterations(static_cast<int>(std::lround(boost_ * options_.solver_iterations)));
+  }
+  void boost_if_late(int step) {
+    if (step > steps_in(options_.solver_patience, options_) && step % steps_in(kBoostInterval, options_) == 0) boost();
+  }
+
+ private:
+  RigidWorld& world_;
+  const PhysicsOptions& options_;
+  double boost_ = 1.0;
+};
+
 /// Steps until every tube has been slow for the rest window; false at the time limit or when a tube is lost.
-bool run_until_slow(RigidWorld& world, const Bin& bin, const PhysicsOptions& options, DropFigures& figures) {
+bool run_until_slow(RigidWorld& world, const Bin& bin, const PhysicsOptions& options, SolverEffort& effort,
+                    DropFigures& figures) {
   const int window = steps_in(options.rest_window, options);
   const int limit = steps_in(options.time_limit, options);
   for (int slow_steps = 0; slow_steps < window;) {
     if (figures.steps >= limit || find_outside(world, bin)) return false;
+    effort.boost_if_late(figures.steps);
     world.step();
     ++figures.steps;
     slow_steps = is_slow(world, options) ? slow_steps + 1 : 0;
@@ -78,17 +103,16 @@ DropResult drop_tubes(const std::vector<Tube>& tubes, const Bin& bin, const Phys
 
   RigidWorld world(*spawned, bin, options, random.bits());
   DropFigures figures;
-  for (int iterations = options.solver_iterations;;) {
-    const bool slow = run_until_slow(world, bin, options, figures);
+  SolverEffort effort(world, options);
+  while (true) {
+    const bool slow = run_until_slow(world, bin, options, effort, figures);
     figures.simulated_seconds = figures.steps * options.time_step;
     if (const auto tube = find_outside(world, bin))
       return failed(DropFailure::outside, fmt::format("tube {} left the bin", *tube + 1), figures);
     if (!slow)
       return failed(figures.largest_drift > 0.0 ? DropFailure::drift : DropFailure::unsettled,
                     fmt::format("still moving after {} s", options.time_limit), figures);
-    // What still creeps under a solver that did not converge may stand under one that does.
-    iterations = std::min(2 * iterations, kSolverBoostMax * options.solver_iterations);
-    world.set_solver_iterations(iterations);
+    effort.boost();
     figures.largest_drift = run_on(world, options, figures);
     figures.simulated_seconds = figures.steps * options.time_step;
     if (figures.largest_drift <= options.drift_max) break;

@@ -5,9 +5,16 @@ namespace tubebin {
 void describe(Fields& fields, PhysicsOptions& o) {
   fields.number("gravity", o.gravity, {0.01, 100.0}, "m/s^2", "downward acceleration");
   fields.number("time_step", o.time_step, {1e-5, 0.05}, "s", "of the simulation; smaller is slower and more exact");
-  fields.integer("solver_iterations", o.solver_iterations, {1, 10000}, "",
-                 "of ODE's quickstep; doubled for each check that nothing moves, whose creep is the solver's residual");
+  fields.integer(
+      "solver_iterations", o.solver_iterations, {1, 10000}, "",
+      "of ODE's quickstep; half as many more for each check that nothing moves, whose creep is the solver's residual");
   fields.number("solver_over_relaxation", o.solver_over_relaxation, {0.1, 1.9}, "", "quickstep's SOR factor");
+  fields.number("solver_patience", o.solver_patience, {0.0, 10000.0}, "s",
+                "a pile that is not at rest after this time is iterated half as much again every quarter of a second");
+  fields.number("warm_start", o.warm_start, {0.0, 0.95}, "",
+                "share of a resting contact's force that the next step starts from; 0 starts from none");
+  fields.number("warm_start_speed", o.warm_start_speed, {0.0, 10.0}, "m/s",
+                "a contact rests where its surfaces move slower than this against each other");
   fields.number("contact_erp", o.contact_erp, {0.0, 1.0}, "",
                 "share of an interpenetration that one step corrects (ODE's error reduction parameter)");
   fields.number("contact_cfm", o.contact_cfm, {0.0, 1.0}, "s/kg",

@@ -2,9 +2,12 @@
 
 #include <ode/ode.h>
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <stdexcept>
+
+#include "physics/warm_start.hpp"
 
 namespace tubebin {
 namespace {
@@ -32,7 +35,7 @@ dMass to_ode(const MassProperties& properties) {
 
 struct RigidWorld::Impl {
   dWorldID world = nullptr;
-  dJointGroupID contacts = nullptr;
+  dJointGroupID joints = nullptr;
   PhysicsOptions options;
   std::vector<Box> bin;
   std::vector<PlacedTube> tubes;  ///< poses are the bodies'
@@ -41,6 +44,7 @@ struct RigidWorld::Impl {
   std::vector<std::vector<int>> degrees;
   std::vector<CollisionTube> shapes;
   std::vector<Touch> touches;
+  std::vector<StepContact> contacts;  ///< of the last step
 
   void add_body(const PlacedTube& tube) {
     const MassProperties properties = mass_properties(tube.tube);
@@ -64,34 +68,89 @@ struct RigidWorld::Impl {
     tubes[i].world_from_tube = make_pose(rotation, to_vec(dBodyGetPosition(bodies[i])) - rotation * centers[i]);
   }
 
-  /// `first` may be null: the bin.
-  void add_contacts(dBodyID first, dBodyID second, double friction) {
-    for (const Touch& touch : touches) {
-      dContact contact{};
-      contact.surface.mode = dContactApprox1 | dContactRolling | dContactSoftERP | dContactSoftCFM;
-      contact.surface.rho = contact.surface.rho2 = options.rolling_resistance;
-      contact.surface.mu = friction;
-      contact.surface.soft_erp = options.contact_erp;
-      contact.surface.soft_cfm = options.contact_cfm;
-      contact.geom.depth = touch.depth;
-      for (int axis = 0; axis < 3; ++axis) {
-        contact.geom.pos[axis] = touch.position[axis];
-        contact.geom.normal[axis] = touch.normal[axis];  // points into ODE's first body
-      }
-      dJointAttach(dJointCreateContact(world, contacts, &contact), second, first);
-    }
-    touches.clear();
-  }
-
   void find_contacts() {
+    contacts.clear();
+    const auto append = [&](std::size_t first, std::size_t second) {
+      for (const Touch& touch : touches) contacts.push_back({.first = first, .second = second, .touch = touch});
+      touches.clear();
+    };
     for (std::size_t j = 0; j < shapes.size(); ++j) {
       collide(bin, shapes[j], 0.0, touches);
-      add_contacts(nullptr, bodies[j], options.friction_bin);
+      append(kBinBody, j);
       for (std::size_t i = 0; i < j; ++i) {
         collide(shapes[i], shapes[j], 0.0, touches);
-        add_contacts(bodies[i], bodies[j], options.friction_tube);
+        append(i, j);
       }
     }
+  }
+
+  void add_joint(const StepContact& in, dJointFeedback& feedback) {
+    dContact contact{};
+    contact.surface.mode = dContactApprox1 | dContactRolling | dContactSoftERP | dContactSoftCFM;
+    contact.surface.rho = options.rolling_resistance;
+    contact.surface.mu = in.first == kBinBody ? options.friction_bin : options.friction_tube;
+    contact.surface.soft_erp = options.contact_erp;
+    contact.surface.soft_cfm = options.contact_cfm;
+    contact.geom.depth = in.touch.depth;
+    for (int axis = 0; axis < 3; ++axis) {
+      contact.geom.pos[axis] = in.touch.position[axis];
+      contact.geom.normal[axis] = in.touch.normal[axis];  // points into ODE's first body
+    }
+    const dJointID joint = dJointCreateContact(world, joints, &contact);
+    dJointAttach(joint, bodies[in.second], in.first == kBinBody ? nullptr : bodies[in.first]);
+    dJointSetFeedback(joint, &feedback);
+  }
+
+  Vec3 velocity_at(std::size_t i, const Vec3& point) const {
+    const Vec3 arm = point - to_vec(dBodyGetPosition(bodies[i]));
+    return to_vec(dBodyGetLinearVel(bodies[i])) + turn_velocity(i).cross(arm);
+  }
+  Vec3 turn_velocity(std::size_t i) const { return to_vec(dBodyGetAngularVel(bodies[i])); }
+
+  /// Whether the two surfaces hardly move against each other, nor does either tube spin in place.
+  bool is_resting(const StepContact& contact) const {
+    const Vec3& point = contact.touch.position;
+    Vec3 velocity = velocity_at(contact.second, point);
+    double turn_rate = turn_velocity(contact.second).norm();
+    if (contact.first != kBinBody) {
+      velocity -= velocity_at(contact.first, point);
+      turn_rate = std::max(turn_rate, turn_velocity(contact.first).norm());
+    }
+    return std::max(velocity.norm(), turn_rate * shapes[contact.second].radius) < options.warm_start_speed;
+  }
+
+  void apply(const ContactLoad& load, const StepContact& contact) const {
+    const auto add = [this](std::size_t i, const Vec3& force, const Vec3& torque) {
+      dBodyAddForce(bodies[i], force.x(), force.y(), force.z());
+      dBodyAddTorque(bodies[i], torque.x(), torque.y(), torque.z());
+    };
+    add(contact.second, load.force_on_second, load.torque_on_second);
+    if (contact.first != kBinBody) add(contact.first, -load.force_on_second, load.torque_on_first);
+  }
+
+  /// Finds the contacts, solves the step, and leaves in the contacts what they bore.
+  void solve() {
+    WarmStart warm_start(std::move(contacts));
+    find_contacts();
+    std::vector<dJointFeedback> feedback(contacts.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      StepContact& contact = contacts[i];
+      add_joint(contact, feedback[i]);
+      if (options.warm_start == 0.0) continue;
+      const double reach = 0.5 * shapes[contact.second].radius;
+      contact.load = warm_start.start(contact, options.warm_start, reach, is_resting(contact));
+      apply(contact.load, contact);
+    }
+    dWorldQuickStep(world, options.time_step);
+    dJointGroupEmpty(joints);
+    for (std::size_t i = 0; i < contacts.size(); ++i) add_solved(feedback[i], contacts[i]);
+  }
+
+  static void add_solved(const dJointFeedback& solved, StepContact& contact) {
+    contact.load.force_on_second += to_vec(solved.f1);
+    contact.load.torque_on_second += to_vec(solved.t1);
+    if (contact.first != kBinBody) contact.load.torque_on_first += to_vec(solved.t2);
+    contact.normal_force = contact.load.force_on_second.dot(contact.touch.normal);
   }
 
   void limit_speed(dBodyID body) const {
@@ -112,7 +171,7 @@ RigidWorld::RigidWorld(const std::vector<PlacedTube>& tubes, const Bin& bin, con
   impl_->bin = collision_boxes(bin);
   impl_->tubes = tubes;
   impl_->world = dWorldCreate();
-  impl_->contacts = dJointGroupCreate(0);
+  impl_->joints = dJointGroupCreate(0);
   dWorldSetGravity(impl_->world, 0, 0, -options.gravity);
   dWorldSetQuickStepNumIterations(impl_->world, options.solver_iterations);
   dWorldSetQuickStepW(impl_->world, options.solver_over_relaxation);
@@ -123,16 +182,14 @@ RigidWorld::RigidWorld(const std::vector<PlacedTube>& tubes, const Bin& bin, con
 }
 
 RigidWorld::~RigidWorld() {
-  dJointGroupDestroy(impl_->contacts);
+  dJointGroupDestroy(impl_->joints);
   dWorldDestroy(impl_->world);
 }
 
 void RigidWorld::set_solver_iterations(int iterations) { dWorldSetQuickStepNumIterations(impl_->world, iterations); }
 
 void RigidWorld::step() {
-  impl_->find_contacts();
-  dWorldQuickStep(impl_->world, impl_->options.time_step);
-  dJointGroupEmpty(impl_->contacts);
+  impl_->solve();
   for (std::size_t i = 0; i < impl_->bodies.size(); ++i) {
     impl_->limit_speed(impl_->bodies[i]);
     impl_->read_pose(i);
@@ -140,7 +197,7 @@ void RigidWorld::step() {
   }
 }
 
-std::vector<PlacedTube> RigidWorld::tubes() const { return impl_->tubes; }
+const std::vector<PlacedTube>& RigidWorld::tubes() const { return impl_->tubes; }
 Pose RigidWorld::pose(std::size_t tube) const { return impl_->tubes[tube].world_from_tube; }
 Vec3 RigidWorld::center_of_mass(std::size_t tube) const { return to_vec(dBodyGetPosition(impl_->bodies[tube])); }
 double RigidWorld::speed(std::size_t tube) const { return to_vec(dBodyGetLinearVel(impl_->bodies[tube])).norm(); }

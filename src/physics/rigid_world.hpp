@@ -21,7 +21,7 @@ class RigidWorld {
   /// One step of options.time_step.
   void step();
 
-  std::vector<PlacedTube> tubes() const;
+  const std::vector<PlacedTube>& tubes() const;
   /// World pose of one tube's frame.
   Pose pose(std::size_t tube) const;
   Vec3 center_of_mass(std::size_t tube) const;
