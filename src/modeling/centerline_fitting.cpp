@@ -43,18 +43,25 @@ std::vector<double> geodesic_distances(const VoteVoxels& voxels, const std::vect
 }
 
 /// The farthest reachable voxel.
-std::uint32_t farthest(const std::vector<double>& distance) {
-  std::uint32_t best = 0;
+std::uint32_t farthest(const std::vector<double>& distance, std::uint32_t from) {
+  std::uint32_t best = from;
   for (std::uint32_t i = 0; i < distance.size(); ++i)
-    if (std::isfinite(distance[i]) && !(distance[i] <= distance[best])) best = i;
+    if (std::isfinite(distance[i]) && distance[i] > distance[best]) best = i;
+  return best;
+}
+
+/// The voxel of most votes: on the line for sure, where any other may be a stray that nothing links to.
+std::uint32_t fullest(const VoteVoxels& voxels) {
+  std::uint32_t best = 0;
+  for (std::uint32_t i = 1; i < voxels.size(); ++i)
+    if (voxels.count(i) > voxels.count(best)) best = i;
   return best;
 }
 
 /// Mean votes at equal geodesic distance from one end: the level sets' centres are a first skeleton (Verroust and
 /// Lazarus 2000, "Extracting skeletal curves from 3D scattered data").
-std::vector<Vec3> level_set_skeleton(const std::vector<Vote>& votes, double radius) {
-  std::vector<Point> centers;
-  for (const Vote& vote : votes) centers.push_back(vote.center.cast<float>());
+/// All votes, since some alone may leave gaps wider than a link.
+std::vector<Vec3> level_set_skeleton(const std::vector<Point>& centers, double radius) {
   const double step = radius / 3.0;
   const VoteVoxels voxels(centers, step, 1);
   std::vector<std::vector<std::uint32_t>> linked(voxels.size());
@@ -62,7 +69,8 @@ std::vector<Vec3> level_set_skeleton(const std::vector<Vote>& votes, double radi
     linked[a].push_back(b);
     linked[b].push_back(a);
   }
-  const std::uint32_t end = farthest(geodesic_distances(voxels, linked, 0));
+  const std::uint32_t middle = fullest(voxels);
+  const std::uint32_t end = farthest(geodesic_distances(voxels, linked, middle), middle);
   const std::vector<double> distance = geodesic_distances(voxels, linked, end);
 
   std::vector<Vec3> sums;
@@ -210,20 +218,22 @@ void drop_joints_at_ends(std::vector<Vec3>& nodes, double radius) {
 
 }  // namespace
 
-std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Segment& segment, const Segment& loose,
-                                        double radius, const Vec3& viewpoint) {
+std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Segment& segment,
+                                        std::span<const SurfacePoint> loose, double radius, const Vec3& viewpoint) {
   // Some hundred votes make a curve as well as all would: its error falls below a tenth of their scatter.
   constexpr std::size_t kVotes = 800;
   std::vector<Vote> votes;
-  std::vector<SurfacePoint> surface, all;
+  std::vector<SurfacePoint> surface, own;
+  std::vector<Point> centers;
   for (std::size_t k = 0; k < segment.size(); ++k) {
     const Vec3 p = cloud.points[segment[k]].cast<double>(), n = cloud.normals[segment[k]].cast<double>();
-    all.push_back({p, n});
+    own.push_back({p, n});
+    centers.push_back((p - radius * n).cast<float>());
     if (k % (segment.size() / kVotes + 1) != 0) continue;
     surface.push_back({p, n});
     votes.push_back({.point = p, .normal = n, .center = p - radius * n});
   }
-  std::vector<Vec3> curve = level_set_skeleton(votes, radius);
+  std::vector<Vec3> curve = level_set_skeleton(centers, radius);
   if (curve.size() >= 3) curve = smooth(curve, votes, radius / 3.0, radius);
   if (curve.size() >= 3) curve = smooth(curve, votes, radius / 3.0, radius);
   curve = trim(curve, 1.5 * radius);
@@ -239,10 +249,9 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Segmen
   }
   if (fit_surface(piece.nodes, surface, radius).sigma > radius / 4.0) return std::nullopt;
 
-  for (const std::uint32_t i : loose) all.push_back({cloud.points[i].cast<double>(), cloud.normals[i].cast<double>()});
-  grow_end(piece.nodes, all, radius, cloud.spacing, viewpoint);
+  grow_end(piece.nodes, own, loose, radius, cloud.spacing, viewpoint);
   std::reverse(piece.nodes.begin(), piece.nodes.end());
-  grow_end(piece.nodes, all, radius, cloud.spacing, viewpoint);
+  grow_end(piece.nodes, own, loose, radius, cloud.spacing, viewpoint);
   // Twice: a corner that the first nodes cut is found when they have moved.
   for (int round = 0; round < 2; ++round) {
     std::vector<Vec3> nodes = {piece.nodes.front()};

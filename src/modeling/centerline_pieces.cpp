@@ -4,25 +4,25 @@
 #include "tubebin/modeling/centerline_segmentation.hpp"
 #include "tubebin/modeling/flat_ends.hpp"
 #include "tubebin/modeling/piece_cleaning.hpp"
-#include "tubebin/modeling/view_grid.hpp"
+#include "tubebin/modeling/normals.hpp"
 
 namespace tubebin {
 namespace {
 
 /// The points that no segment holds.
-Segment loose_points(std::size_t count, const std::vector<Segment>& segments) {
-  std::vector<bool> is_held(count, false);
+std::vector<SurfacePoint> loose_points(const FilteredCloud& cloud, const std::vector<Segment>& segments) {
+  std::vector<bool> is_held(cloud.points.size(), false);
   for (const Segment& segment : segments)
     for (const std::uint32_t i : segment) is_held[i] = true;
-  Segment loose;
-  for (std::uint32_t i = 0; i < count; ++i)
-    if (!is_held[i]) loose.push_back(i);
+  std::vector<SurfacePoint> loose;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+    if (!is_held[i]) loose.push_back({cloud.points[i].cast<double>(), cloud.normals[i].cast<double>()});
   return loose;
 }
 
 std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vector<Segment>& segments,
                                     const ViewProjection& projection, double radius) {
-  const Segment loose = loose_points(cloud.points.size(), segments);
+  const std::vector<SurfacePoint> loose = loose_points(cloud, segments);
   const Vec3 viewpoint = projection.viewpoint().cast<double>();
   std::vector<TubePiece> pieces;
   for (const Segment& segment : segments)
@@ -30,13 +30,20 @@ std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vecto
   return pieces;
 }
 
-/// The selected points as a cloud of their own.
-FilteredCloud part_of(const FilteredCloud& cloud, const Segment& selected, const ViewProjection& projection,
-                      double radius) {
-  FilteredCloud part{.source = {}, .points = {}, .normals = {}, .spacing = cloud.spacing};
-  for (const std::uint32_t i : selected) part.points.push_back(cloud.points[i]);
+/// The selected points as a cloud of their own; `source` are their places in `cloud`.
+FilteredCloud part_of(const FilteredCloud& cloud, Segment selected, const ViewProjection& projection, double radius) {
+  FilteredCloud part{.source = std::move(selected), .points = {}, .normals = {}, .spacing = cloud.spacing};
+  for (const std::uint32_t i : part.source) part.points.push_back(cloud.points[i]);
   part.normals = estimate_normals(projection, part.points, normal_radius(cloud.spacing, radius));
   return part;
+}
+
+/// What of `rest`, a part of `cloud`, no piece explains.
+FilteredCloud still_unexplained(const FilteredCloud& rest, const FilteredCloud& cloud,
+                                const std::vector<TubePiece>& pieces, const ViewProjection& projection, double radius) {
+  Segment selected;
+  for (const std::uint32_t i : unexplained_points(rest.points, pieces, rest.spacing)) selected.push_back(rest.source[i]);
+  return part_of(cloud, std::move(selected), projection, radius);
 }
 
 }  // namespace
@@ -46,14 +53,12 @@ std::vector<TubePiece> find_centerline_pieces(const FilteredCloud& cloud, const 
   std::vector<TubePiece> pieces = fit_segments(cloud, segments, projection, radius);
   drop_explained_pieces(pieces, cloud.points, cloud.spacing);
 
-  Segment unexplained = unexplained_points(cloud.points, pieces, cloud.spacing);
-  FilteredCloud rest = part_of(cloud, unexplained, projection, radius);
+  FilteredCloud rest = part_of(cloud, unexplained_points(cloud.points, pieces, cloud.spacing), projection, radius);
   fit_flat_ends(pieces, cloud, rest);
 
-  unexplained = unexplained_points(cloud.points, pieces, cloud.spacing);
-  rest = part_of(cloud, unexplained, projection, radius);
+  rest = still_unexplained(rest, cloud, pieces, projection, radius);
   for (TubePiece& piece : fit_segments(rest, segment_by_votes(rest, radius), projection, radius)) {
-    for (std::uint32_t& i : piece.points) i = unexplained[i];
+    for (std::uint32_t& i : piece.points) i = rest.source[i];
     pieces.push_back(std::move(piece));
   }
   fit_flat_ends(pieces, cloud, rest);

@@ -6,6 +6,7 @@
 
 #include "tubebin/core/error.hpp"
 #include "tubebin/modeling/bin_planes.hpp"
+#include "tubebin/modeling/normals.hpp"
 #include "tubebin/modeling/view_grid.hpp"
 
 namespace tubebin {

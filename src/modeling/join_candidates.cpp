@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 namespace tubebin {
 namespace {
@@ -66,20 +67,41 @@ Eigen::AlignedBox3d box_of(const std::vector<Vec3>& nodes) {
   return box;
 }
 
+/// What the many bridges ask of each piece.
+struct Obstacle {
+  const std::vector<Vec3>& nodes;
+  double length;
+  bool is_fragment;
+  Eigen::AlignedBox3d box;
+  Vec3 middle;  ///< of a fragment, which is one cylinder
+};
+
+std::vector<Obstacle> obstacles_of(const std::vector<TubePiece>& pieces) {
+  std::vector<Obstacle> obstacles;
+  for (const TubePiece& piece : pieces)
+    obstacles.push_back({.nodes = piece.nodes,
+                         .length = piece.length(),
+                         .is_fragment = is_fragment(piece),
+                         .box = box_of(piece.nodes),
+                         .middle = 0.5 * (piece.nodes.front() + piece.nodes.back())});
+  return obstacles;
+}
+
 /// Two tubes cannot occupy one place: how far the bridge comes nearer than two radii to another piece's centreline,
 /// against how well its course is known (between its ends, the random walk's deviation q D^3 / 192 at the middle).
-double collision_cost(const std::vector<Vec3>& bridge, const std::vector<TubePiece>& pieces,
-                      const std::vector<Eigen::AlignedBox3d>& boxes, std::size_t piece_a, std::size_t piece_b,
-                      double bending_rate) {
+double collision_cost(const std::vector<Vec3>& bridge, const std::vector<Obstacle>& obstacles, std::size_t piece_a,
+                      std::size_t piece_b, double bending_rate, double radius) {
   const double gap = (bridge.back() - bridge.front()).norm();
   const Eigen::AlignedBox3d own_box = box_of(bridge);
   double cost = 0.0;
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
-    if (k == piece_a || k == piece_b || is_fragment(pieces[k])) continue;
-    const double radius = pieces[k].radius;
-    if (own_box.squaredExteriorDistance(boxes[k]) > 4.0 * radius * radius) continue;
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    const Obstacle& other = obstacles[k];
+    if (k == piece_a || k == piece_b || other.is_fragment) continue;
+    if (own_box.squaredExteriorDistance(other.box) > 4.0 * radius * radius) continue;
     double deepest = 0.0;
-    for (const Vec3& p : bridge) deepest = std::max(deepest, 2.0 * radius - distance_to_polyline(p, pieces[k].nodes));
+    for (const Vec3& p : bridge)
+      if (other.box.squaredExteriorDistance(p) < 4.0 * radius * radius)
+        deepest = std::max(deepest, 2.0 * radius - distance_to_polyline(p, other.nodes));
     const double sigma = std::hypot(0.2 * radius, std::sqrt(bending_rate * gap * gap * gap / 192.0));
     cost += 0.5 * deepest * deepest / (sigma * sigma);
     if (cost > kCostLimit) break;
@@ -89,25 +111,54 @@ double collision_cost(const std::vector<Vec3>& bridge, const std::vector<TubePie
 
 /// The fragments that the bridge, or the pieces beside it, run through: bits of the same tube's surface.
 std::vector<std::uint32_t> absorbed_fragments(const std::vector<Vec3>& bridge, const PieceEnd& a, const PieceEnd& b,
-                                              const std::vector<TubePiece>& pieces, std::size_t piece_a,
-                                              std::size_t piece_b) {
-  const double radius = pieces[piece_a].radius;
+                                              const std::vector<Obstacle>& obstacles, std::size_t piece_a,
+                                              std::size_t piece_b, double radius) {
   std::vector<Vec3> course = {bridge.front() - radius * a.outward};
   course.insert(course.end(), bridge.begin(), bridge.end());
   course.push_back(bridge.back() - radius * b.outward);
   std::vector<std::uint32_t> absorbed;
-  for (std::uint32_t k = 0; k < pieces.size(); ++k) {
-    if (k == piece_a || k == piece_b || !is_fragment(pieces[k])) continue;
-    const Vec3 middle = 0.5 * (pieces[k].nodes.front() + pieces[k].nodes.back());
-    if (distance_to_polyline(middle, course) < radius / 2.0) absorbed.push_back(k);
-  }
+  for (std::uint32_t k = 0; k < obstacles.size(); ++k)
+    if (k != piece_a && k != piece_b && obstacles[k].is_fragment &&
+        distance_to_polyline(obstacles[k].middle, course) < radius / 2.0)
+      absorbed.push_back(k);
   return absorbed;
+}
+
+/// What the scan says against a bridge; not summed up beyond `limit`. Neighbouring samples, half a radius apart, say
+/// much the same: a diameter's worth counts once.
+double empty_cost(const std::vector<Vec3>& bridge, const OcclusionTest& occlusion, double radius, double limit) {
+  const double gap = (bridge.back() - bridge.front()).norm();
+  const double of_all = kEmptyCost * std::max(gap / (2.0 * radius), 1.0);
+  return of_all * occlusion.empty_part(bridge, limit / of_all);
 }
 
 double bounding_volume(const std::vector<PieceEnd>& ends, double radius) {
   Eigen::AlignedBox3d box;
   for (const PieceEnd& end : ends) box.extend(end.position);
   return (box.sizes().array() + 2.0 * radius).prod();
+}
+
+/// Two ends that may be joined.
+struct Pair {
+  std::uint32_t end_a, end_b;
+  double cost;           ///< of the bridge's shape and of ends that are seen to be free; with the scan's say, if final
+  bool is_final = false;
+};
+
+std::vector<Pair> plausible_pairs(const std::vector<PieceEnd>& ends, const std::vector<Obstacle>& obstacles,
+                                  double bending_rate, double length_limit, double radius) {
+  const double density = static_cast<double>(ends.size()) / bounding_volume(ends, radius);
+  std::vector<Pair> pairs;
+  for (std::uint32_t a = 0; a < ends.size(); ++a)
+    for (std::uint32_t b = a + 1; b < ends.size(); ++b) {
+      if (a / 2 == b / 2) continue;
+      const double gap = (ends[b].position - ends[a].position).norm();
+      if (obstacles[a / 2].length + obstacles[b / 2].length + gap > length_limit) continue;
+      const double cost = shape_cost(ends[a], ends[b], bending_rate, radius, density) +
+                          kEmptyCost * (ends[a].seen_free + ends[b].seen_free);
+      if (cost < kCostLimit) pairs.push_back({.end_a = a, .end_b = b, .cost = cost});
+    }
+  return pairs;
 }
 
 }  // namespace
@@ -154,40 +205,42 @@ std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, cons
   return ends;
 }
 
-std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
-                                                const OcclusionTest& occlusion, double bending_rate,
-                                                double length_limit) {
+std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces,
+                                                const std::vector<PieceEnd>& ends, const OcclusionTest& occlusion,
+                                                double bending_rate, double length_limit, std::size_t joins_per_end) {
   std::vector<JoinCandidate> candidates;
   if (pieces.empty()) return candidates;
   const double radius = pieces.front().radius;
-  const double density = static_cast<double>(ends.size()) / bounding_volume(ends, radius);
-  std::vector<double> lengths;
-  std::vector<Eigen::AlignedBox3d> boxes;
-  for (const TubePiece& piece : pieces) {
-    lengths.push_back(piece.length());
-    boxes.push_back(box_of(piece.nodes));
-  }
-  for (std::uint32_t a = 0; a < ends.size(); ++a)
-    for (std::uint32_t b = a + 1; b < ends.size(); ++b) {
-      if (a / 2 == b / 2) continue;
-      const double gap = (ends[b].position - ends[a].position).norm();
-      if (lengths[a / 2] + lengths[b / 2] + gap > length_limit) continue;
-      double cost = shape_cost(ends[a], ends[b], bending_rate, radius, density);
-      cost += kEmptyCost * (ends[a].seen_free + ends[b].seen_free);
-      if (!(cost < kCostLimit)) continue;
-      auto bridge = bridge_between(ends[a], ends[b], radius);
-      // Neighbouring samples, half a radius apart, say much the same: a diameter's worth counts once.
-      const StretchEvidence seen = occlusion.along(bridge);
-      cost += kEmptyCost * seen.empty * std::max(gap / (2.0 * radius), 1.0);
-      if (!(cost < kCostLimit)) continue;
-      cost += collision_cost(bridge, pieces, boxes, a / 2, b / 2, bending_rate);
-      if (!(cost < kCostLimit)) continue;
-      auto absorbed = absorbed_fragments(bridge, ends[a], ends[b], pieces, a / 2, b / 2);
-      candidates.push_back(
-          {.end_a = a, .end_b = b, .cost = cost, .bridge = std::move(bridge), .absorbed = std::move(absorbed)});
+  const std::vector<Obstacle> obstacles = obstacles_of(pieces);
+  std::vector<Pair> queue = plausible_pairs(ends, obstacles, bending_rate, length_limit, radius);
+  // Best first: a pair's cost only grows as it is looked into, so most pairs need no look at all.
+  const auto later = [](const Pair& x, const Pair& y) {
+    return std::tie(x.cost, x.end_a, x.end_b) > std::tie(y.cost, y.end_a, y.end_b);
+  };
+  std::make_heap(queue.begin(), queue.end(), later);
+  std::vector<std::size_t> joins_of_end(ends.size(), 0);
+  while (!queue.empty()) {
+    std::pop_heap(queue.begin(), queue.end(), later);
+    Pair pair = queue.back();
+    queue.pop_back();
+    const std::uint32_t a = pair.end_a, b = pair.end_b;
+    if (joins_of_end[a] >= joins_per_end && joins_of_end[b] >= joins_per_end) continue;
+    auto bridge = bridge_between(ends[a], ends[b], radius);
+    if (!pair.is_final) {
+      pair.cost += empty_cost(bridge, occlusion, radius, kCostLimit - pair.cost);
+      if (!(pair.cost < kCostLimit)) continue;
+      pair.cost += collision_cost(bridge, obstacles, a / 2, b / 2, bending_rate, radius);
+      if (!(pair.cost < kCostLimit)) continue;
+      pair.is_final = true;
+      queue.push_back(pair);
+      std::push_heap(queue.begin(), queue.end(), later);
+      continue;
     }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const JoinCandidate& x, const JoinCandidate& y) { return x.cost < y.cost; });
+    ++joins_of_end[a], ++joins_of_end[b];
+    auto absorbed = absorbed_fragments(bridge, ends[a], ends[b], obstacles, a / 2, b / 2, radius);
+    candidates.push_back(
+        {.end_a = a, .end_b = b, .cost = pair.cost, .bridge = std::move(bridge), .absorbed = std::move(absorbed)});
+  }
   return candidates;
 }
 

@@ -74,17 +74,14 @@ StretchEvidence OcclusionTest::around(const Vec3& center, const Vec3& direction)
   return {sum.hidden / 3.0, sum.surface / 3.0, sum.empty / 3.0};
 }
 
-StretchEvidence OcclusionTest::along(const std::vector<Vec3>& curve) const {
-  StretchEvidence sum;
-  double samples = 0.0;
-  for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+double OcclusionTest::empty_part(const std::vector<Vec3>& curve, double enough) const {
+  const auto samples = static_cast<double>(curve.size() - 1);
+  double empty = 0.0;
+  for (std::size_t i = 0; i + 1 < curve.size() && empty < enough * samples; ++i) {
     const Vec3 step = curve[i + 1] - curve[i];
-    const StretchEvidence e = around(curve[i] + 0.5 * step, step.normalized());
-    sum.hidden += e.hidden, sum.surface += e.surface, sum.empty += e.empty;
-    samples += 1.0;
+    empty += around(curve[i] + 0.5 * step, step.normalized()).empty;
   }
-  if (samples > 0.0) sum.hidden /= samples, sum.surface /= samples, sum.empty /= samples;
-  return sum;
+  return empty / samples;
 }
 
 double OcclusionTest::hidden_reach(const Vec3& end, const Vec3& outward, double limit) const {

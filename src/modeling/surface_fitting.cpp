@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tubebin {
 namespace {
@@ -16,6 +17,12 @@ struct Foot {
   bool beyond = false;          ///< past the polyline's first or last node
 };
 
+double squared_distance_to_axis(const std::vector<Vec3>& nodes, std::size_t k, const Vec3& p) {
+  const Vec3 axis = nodes[k + 1] - nodes[k], offset = p - nodes[k];
+  const double t = std::clamp(offset.dot(axis) / std::max(axis.squaredNorm(), 1e-18), 0.0, 1.0);
+  return (offset - t * axis).squaredNorm();
+}
+
 Foot foot_on_cylinder(const std::vector<Vec3>& nodes, std::size_t k, const Vec3& p) {
   const Vec3 axis = nodes[k + 1] - nodes[k];
   const double t = (p - nodes[k]).dot(axis) / std::max(axis.squaredNorm(), 1e-18);
@@ -27,25 +34,20 @@ Foot foot_on_cylinder(const std::vector<Vec3>& nodes, std::size_t k, const Vec3&
   return foot;
 }
 
-Foot nearest_foot(const std::vector<Vec3>& nodes, const Vec3& p) {
-  Foot best;
-  for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
-    const Foot foot = foot_on_cylinder(nodes, k, p);
-    if (k == 0 || foot.distance < best.distance) best = foot;
+/// On the nearest of the cylinders [first, last).
+Foot nearest_foot(const std::vector<Vec3>& nodes, const Vec3& p, std::size_t first, std::size_t last) {
+  std::size_t best = first;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = first; k < last; ++k) {
+    const double squared = squared_distance_to_axis(nodes, k, p);
+    if (squared < nearest) nearest = squared, best = k;
   }
-  return best;
+  return foot_on_cylinder(nodes, best, p);
 }
 
 /// As the nodes move little from step to step, a point's foot stays on its cylinder or goes to one beside it.
 Foot follow_foot(const std::vector<Vec3>& nodes, const Vec3& p, std::size_t cylinder) {
-  Foot best = foot_on_cylinder(nodes, cylinder, p);
-  const std::size_t first = cylinder == 0 ? 0 : cylinder - 1;
-  for (std::size_t k = first; k <= cylinder + 1 && k + 1 < nodes.size(); ++k) {
-    if (k == cylinder) continue;
-    const Foot foot = foot_on_cylinder(nodes, k, p);
-    if (foot.distance < best.distance) best = foot;
-  }
-  return best;
+  return nearest_foot(nodes, p, cylinder == 0 ? 0 : cylinder - 1, std::min(cylinder + 2, nodes.size() - 1));
 }
 
 double median(std::vector<double>& values) {
@@ -106,8 +108,8 @@ SurfaceFit fit_surface(std::vector<Vec3>& nodes, std::span<const SurfacePoint> p
   double sigma = 0.0;
   for (int i = 0;; ++i) {
     for (std::size_t k = 0; k < points.size(); ++k)
-      feet[k] =
-          i == 0 ? nearest_foot(nodes, points[k].position) : follow_foot(nodes, points[k].position, feet[k].cylinder);
+      feet[k] = i == 0 ? nearest_foot(nodes, points[k].position, 0, nodes.size() - 1)
+                       : follow_foot(nodes, points[k].position, feet[k].cylinder);
     sigma = robust_sigma(feet, radius);
     // Tukey's constant for 95 % efficiency; never so narrow that float rounding decides, never wider than half the
     // radius, beyond which a point is not on this surface.
@@ -199,6 +201,31 @@ struct Support {
   }
 };
 
+/// The points about a place that moves on by steps shorter than a radius, gathered anew where it has moved far.
+class PointsAbout {
+ public:
+  PointsAbout(std::span<const SurfacePoint> own, std::span<const SurfacePoint> loose, double radius)
+      : own_(own), loose_(loose), radius_(radius) {}
+
+  /// At least those within two radii.
+  const std::vector<SurfacePoint>& near(const Vec3& place) {
+    if (!((place - gathered_about_).norm() <= 4.0 * radius_)) {
+      gathered_about_ = place;
+      gathered_.clear();
+      for (const auto& points : {own_, loose_})
+        for (const SurfacePoint& point : points)
+          if ((point.position - place).squaredNorm() < 36.0 * radius_ * radius_) gathered_.push_back(point);
+    }
+    return gathered_;
+  }
+
+ private:
+  std::span<const SurfacePoint> own_, loose_;
+  double radius_;
+  Vec3 gathered_about_ = Vec3::Constant(std::numeric_limits<double>::infinity());
+  std::vector<SurfacePoint> gathered_;
+};
+
 /// Whether a new node would lie where the tube has been: within a radius of what is two radii back along it.
 bool meets_itself(const std::vector<Vec3>& nodes, const Vec3& next, double radius) {
   double back = (next - nodes.back()).norm();
@@ -214,14 +241,15 @@ bool meets_itself(const std::vector<Vec3>& nodes, const Vec3& next, double radiu
 
 }  // namespace
 
-void grow_end(std::vector<Vec3>& nodes, std::span<const SurfacePoint> points, double radius, double spacing,
-              const Vec3& viewpoint) {
+void grow_end(std::vector<Vec3>& nodes, std::span<const SurfacePoint> own, std::span<const SurfacePoint> loose,
+              double radius, double spacing, const Vec3& viewpoint) {
   constexpr int kMostSteps = 1000;
+  PointsAbout points(own, loose, radius);
   for (int step = 0; step < kMostSteps; ++step) {
     const Vec3 direction = (nodes.back() - nodes[nodes.size() - 2]).normalized();
     NextCylinder next{.start = nodes.back(), .tip = nodes.back() + radius * direction, .radius = radius};
     std::vector<SurfacePoint> close;
-    for (const SurfacePoint& point : points) {
+    for (const SurfacePoint& point : points.near(next.start)) {
       const Vec3 offset = point.position - next.start;
       if (offset.squaredNorm() < 3.0 * radius * radius && offset.dot(direction) > -0.7 * radius) close.push_back(point);
     }

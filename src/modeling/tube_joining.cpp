@@ -46,9 +46,12 @@ class Joiner {
     }
     bending_rate_ = estimate_bending_rate(pieces, radius_);
     ends_ = find_piece_ends(pieces, occlusion, 40.0 * radius_);
-    joins_ = find_join_candidates(pieces, ends_, occlusion, bending_rate_, longest());
+    joins_ = find_join_candidates(pieces, ends_, occlusion, bending_rate_, longest(), kJoinsPerEnd);
     joins_of_end_.resize(ends_.size());
-    keep_cheapest_joins();
+    for (std::uint32_t j = 0; j < joins_.size(); ++j) {
+      bridge_lengths_.push_back(polyline_length(joins_[j].bridge));
+      for (const std::uint32_t end : {joins_[j].end_a, joins_[j].end_b}) joins_of_end_[end].push_back(j);
+    }
     find_colliding_joins();
   }
 
@@ -119,7 +122,9 @@ class Joiner {
   }
 
   /// Ends are placed to a fraction of a radius, and a bridge's true course may be a twentieth longer.
-  double length_sigma(double bridged) const { return std::hypot(radius_ / 4.0, bridged / 20.0); }
+  double length_sigma(double bridged) const {
+    return std::sqrt(radius_ * radius_ / 16.0 + bridged * bridged / 400.0);
+  }
 
   double end_cost(std::uint32_t end) const { return kHiddenEndCost * (1.0 - ends_[end].seen_free); }
 
@@ -154,7 +159,7 @@ class Joiner {
         return std::find(chain.path.items.begin(), chain.path.items.end(), k) != chain.path.items.end();
       };
       if (taken(piece) || std::any_of(joins_[j].absorbed.begin(), joins_[j].absorbed.end(), taken)) continue;
-      const double gap = polyline_length(joins_[j].bridge);
+      const double gap = bridge_lengths_[j];
       if (chain.length + gap + lengths_[piece] > longest()) continue;
       Chain next = chain;
       next.pieces.push_back(piece);
@@ -204,33 +209,24 @@ class Joiner {
     chains_ = std::move(kept);
   }
 
-  void keep_cheapest_joins() {
-    std::vector<std::size_t> better(ends_.size(), 0);
-    std::erase_if(joins_, [&](const JoinCandidate& join) {  // cheapest first
-      const bool is_far_down = better[join.end_a] >= kJoinsPerEnd && better[join.end_b] >= kJoinsPerEnd;
-      if (!is_far_down) ++better[join.end_a], ++better[join.end_b];
-      return is_far_down;
-    });
-    for (std::uint32_t j = 0; j < joins_.size(); ++j)
-      for (const std::uint32_t end : {joins_[j].end_a, joins_[j].end_b}) joins_of_end_[end].push_back(j);
-  }
-
   void find_colliding_joins() {
     collides_.assign(joins_.size(), std::vector<bool>(joins_.size(), false));
+    std::vector<Eigen::AlignedBox3d> boxes(joins_.size());
+    for (std::size_t i = 0; i < joins_.size(); ++i)
+      for (const Vec3& p : joins_[i].bridge) boxes[i].extend(p);
     for (std::size_t i = 0; i < joins_.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
-        collides_[i][j] = collides_[j][i] = bridges_meet(joins_[i].bridge, joins_[j].bridge);
+        if (boxes[i].squaredExteriorDistance(boxes[j]) < radius_ * radius_)
+          collides_[i][j] = collides_[j][i] = bridges_meet(joins_[i].bridge, joins_[j].bridge, boxes[j]);
   }
 
   /// Less than a radius apart is no matter of the bridges' uncertain course.
-  bool bridges_meet(const std::vector<Vec3>& a, const std::vector<Vec3>& b) const {
-    Eigen::AlignedBox3d box_a, box_b;
-    for (const Vec3& p : a) box_a.extend(p);
-    for (const Vec3& q : b) box_b.extend(q);
-    if (box_a.squaredExteriorDistance(box_b) > radius_ * radius_) return false;
-    for (const Vec3& p : a)
+  bool bridges_meet(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Eigen::AlignedBox3d& box_b) const {
+    for (const Vec3& p : a) {
+      if (box_b.squaredExteriorDistance(p) >= radius_ * radius_) continue;
       for (const Vec3& q : b)
         if ((p - q).squaredNorm() < radius_ * radius_) return true;
+    }
     return false;
   }
 
@@ -267,6 +263,7 @@ class Joiner {
   std::vector<std::uint64_t> piece_keys_;
   std::vector<PieceEnd> ends_;
   std::vector<JoinCandidate> joins_;
+  std::vector<double> bridge_lengths_;  ///< of the joins, metres
   std::vector<std::vector<std::uint32_t>> joins_of_end_;
   std::vector<std::vector<bool>> collides_;  ///< of joins i and j: their bridges take up one place
   std::vector<Chain> chains_;

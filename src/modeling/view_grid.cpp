@@ -1,6 +1,5 @@
 #include "tubebin/modeling/view_grid.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,64 +25,19 @@ struct Extent {
   double area() const { return double(u_max - u_min) * double(v_max - v_min); }
 };
 
-/// Sums that make up the covariance of the neighbours about the point itself.
-struct Moments {
-  using Lanes = Eigen::Array<float, 8, 1>;
-  Lanes count = Lanes::Zero(), x = count, y = count, z = count;
-  Lanes xx = count, xy = count, xz = count, yy = count, yz = count, zz = count;
-
-  float points() const { return count.sum(); }
-  Eigen::Matrix3f covariance() const {
-    const Point sum(x.sum(), y.sum(), z.sum());
-    Eigen::Matrix3f products;
-    products << xx.sum(), xy.sum(), xz.sum(),  //
-        xy.sum(), yy.sum(), yz.sum(),          //
-        xz.sum(), yz.sum(), zz.sum();
-    return products - sum * sum.transpose() / points();
+/// How many cells of this size hold a point.
+std::size_t count_occupied(const std::vector<ViewProjection::Image>& images, const Extent& extent, float cell) {
+  const auto columns = static_cast<std::size_t>((extent.u_max - extent.u_min) / cell) + 1;
+  const auto rows = static_cast<std::size_t>((extent.v_max - extent.v_min) / cell) + 1;
+  std::vector<bool> is_occupied(columns * rows, false);
+  std::size_t count = 0;
+  for (const auto& image : images) {
+    const auto column = std::min(static_cast<std::size_t>((image.u - extent.u_min) / cell), columns - 1);
+    const auto row = std::min(static_cast<std::size_t>((image.v - extent.v_min) / cell), rows - 1);
+    auto occupied = is_occupied[row * columns + column];
+    if (!occupied) occupied = true, ++count;
   }
-};
-
-/// Coordinates in grid order, one array each, so that a row of cells is one run of memory.
-struct SortedPoints {
-  std::vector<float> x, y, z;
-
-  SortedPoints(std::span<const Point> points, const std::vector<std::uint32_t>& order) {
-    x.reserve(order.size());
-    y.reserve(order.size());
-    z.reserve(order.size());
-    for (const std::uint32_t i : order) {
-      x.push_back(points[i].x());
-      y.push_back(points[i].y());
-      z.push_back(points[i].z());
-    }
-    for (auto* coordinates : {&x, &y, &z}) coordinates->resize(order.size() + 8, 0.0f);
-  }
-
-  void add(Moments& m, const Point& center, float squared_radius, std::uint32_t first, std::uint32_t last) const {
-    // Eight at a time without a branch; the arrays' padding, and what follows a run, is masked out.
-    using Eight = Eigen::Array<float, 8, 1>;
-    static const Eight kLanes = Eight::LinSpaced(0.0f, 7.0f);
-    for (std::uint32_t k = first; k < last; k += 8) {
-      const Eight dx = Eight::Map(&x[k]) - center.x(), dy = Eight::Map(&y[k]) - center.y(),
-                  dz = Eight::Map(&z[k]) - center.z();
-      const Eight squared = dx * dx + dy * dy + dz * dz;
-      const Eight w = (squared <= squared_radius && kLanes < static_cast<float>(last - k)).template cast<float>();
-      const Eight wx = w * dx, wy = w * dy, wz = w * dz;
-      m.count += w, m.x += wx, m.y += wy, m.z += wz;
-      m.xx += wx * dx, m.xy += wx * dy, m.xz += wx * dz, m.yy += wy * dy, m.yz += wy * dz, m.zz += wz * dz;
-    }
-  }
-};
-
-/// The plane's normal; zero where the neighbours are too few, or too much in a line, to span one.
-Point plane_normal(const Moments& moments, const Point& to_viewpoint) {
-  if (moments.points() < 5.0f) return Point::Zero();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(moments.covariance());
-  if (solver.eigenvalues()(1) < 0.05f * solver.eigenvalues()(2)) return Point::Zero();
-  const Point normal = solver.eigenvectors().col(0);
-  if (!normal.allFinite()) return Point::Zero();
-  return normal.dot(to_viewpoint) < 0.0f ? Point(-normal) : normal;
+  return count;
 }
 
 }  // namespace
@@ -107,7 +61,7 @@ ViewGrid::ViewGrid(const ViewProjection& projection, std::span<const Point> poin
     const auto column = static_cast<std::uint32_t>((image.u - extent.u_min) / cell);
     const auto row = static_cast<std::uint32_t>((image.v - extent.v_min) / cell);
     cells_.push_back(std::min(row, rows_ - 1) * columns_ + std::min(column, columns_ - 1));
-    if (starts_[cells_.back() + 1]++ == 0) ++occupied_cells_;
+    ++starts_[cells_.back() + 1];
   }
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
 
@@ -136,12 +90,13 @@ std::pair<std::uint32_t, std::uint32_t> ViewGrid::range(int row, int first_colum
 double estimate_spacing(const ViewProjection& projection, std::span<const Point> points) {
   if (points.empty()) return 0.0;
   Extent extent;
+  std::vector<ViewProjection::Image> images;
   std::vector<float> ranges;
+  images.reserve(points.size());
   ranges.reserve(points.size());
   for (const Point& point : points) {
-    const auto image = projection(point);
-    extent.add(image);
-    ranges.push_back(image.range);
+    extent.add(images.emplace_back(projection(point)));
+    ranges.push_back(images.back().range);
   }
   std::nth_element(ranges.begin(), ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2), ranges.end());
   const double range = ranges[ranges.size() / 2];
@@ -153,63 +108,11 @@ double estimate_spacing(const ViewProjection& projection, std::span<const Point>
   double cell = std::sqrt(std::max(extent.area(), 1e-12) * kPointsPerCell / count);
   double area = extent.area();
   for (int round = 0; round < 3; ++round) {
-    const ViewGrid grid(projection, points, static_cast<float>(cell));
-    area = static_cast<double>(grid.occupied_cells()) * cell * cell;
+    cell = std::max(cell, std::sqrt(extent.area() / kMostCells));
+    area = static_cast<double>(count_occupied(images, extent, static_cast<float>(cell))) * cell * cell;
     cell = std::sqrt(area * kPointsPerCell / count);
   }
   return range * std::sqrt(area / count);
-}
-
-namespace {
-
-/// Calls visit(i, center, sum) for every point, where sum(wider) gathers the moments of the points within `radius`,
-/// `wider` times, of it.
-template <typename Visit>
-void for_each_neighborhood(const ViewProjection& projection, std::span<const Point> points, double radius,
-                           const Visit& visit) {
-  float nearest = std::numeric_limits<float>::infinity();
-  for (const Point& point : points) nearest = std::min(nearest, (point - projection.viewpoint()).norm());
-  // Cells of half the radius, as seen at the nearest range: the disc covers most of the 5 x 5 cells searched there,
-  // and fewer of them farther away.
-  const auto r = static_cast<float>(radius);
-  const float cell = 0.5f * r / std::max(nearest, r);
-  const ViewGrid grid(projection, points, cell);
-  const SortedPoints sorted(points, grid.order());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto image = projection(points[i]);
-    // A radian is 1 + (u^2 + v^2) / 4 units of the stereographic plane.
-    const float units = r / std::max(image.range, r) * (1.0f + 0.25f * (image.u * image.u + image.v * image.v));
-    visit(i, [&](float wider) {
-      const int reach = static_cast<int>(std::ceil(units / cell));
-      Moments moments;
-      for (int row = grid.row(i) - reach; row <= grid.row(i) + reach; ++row) {
-        const auto [first, last] = grid.range(row, grid.column(i) - reach, grid.column(i) + reach);
-        sorted.add(moments, points[i], wider * wider * r * r, first, last);
-      }
-      return moments;
-    });
-  }
-}
-
-}  // namespace
-
-std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<const Point> points, double radius) {
-  std::vector<Point> normals(points.size(), Point::Zero());
-  // Where the surface is seen at a flat angle, rows of points that are neighbours in the view lie far apart in space:
-  // a wider ball about the same part of the view finds them.
-  for_each_neighborhood(projection, points, radius, [&](std::size_t i, const auto& sum) {
-    const Point to_viewpoint = projection.viewpoint() - points[i];
-    for (float wider = 1.0f; wider <= 4.0f && normals[i].isZero(); wider *= 2.0f)
-      normals[i] = plane_normal(sum(wider), to_viewpoint);
-  });
-  return normals;
-}
-
-std::vector<int> count_neighbors(const ViewProjection& projection, std::span<const Point> points, double radius) {
-  std::vector<int> counts(points.size(), 0);
-  for_each_neighborhood(projection, points, radius,
-                        [&](std::size_t i, const auto& sum) { counts[i] = static_cast<int>(sum(1.0f).points()); });
-  return counts;
 }
 
 }  // namespace tubebin

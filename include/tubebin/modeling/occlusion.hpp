@@ -23,8 +23,9 @@ class OcclusionTest {
 
   /// Of a tube's surface about one point of its centreline, over the middle of its visible width.
   StretchEvidence around(const Vec3& center, const Vec3& direction) const;
-  /// Of a whole centreline, sampled every half radius.
-  StretchEvidence along(const std::vector<Vec3>& curve) const;
+  /// The part of a centreline, sampled at its steps, where the scan shows that no tube is. Summed up until it is
+  /// `enough`, a part of 1, to rule the whole out.
+  double empty_part(const std::vector<Vec3>& curve, double enough) const;
   /// How far a tube could go on straight from `end` without being seen, metres, at most `limit`.
   double hidden_reach(const Vec3& end, const Vec3& outward, double limit) const;
 

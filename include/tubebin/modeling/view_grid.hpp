@@ -16,7 +16,6 @@ class ViewGrid {
 
   /// Indices of the points, cell by cell, within a cell by their coordinates: an order that the positions determine.
   const std::vector<std::uint32_t>& order() const { return order_; }
-  std::size_t occupied_cells() const { return occupied_cells_; }
   int column(std::size_t point) const { return static_cast<int>(cells_[point] % columns_); }
   int row(std::size_t point) const { return static_cast<int>(cells_[point] / columns_); }
 
@@ -28,18 +27,10 @@ class ViewGrid {
   std::vector<std::uint32_t> cells_;   ///< of each point
   std::vector<std::uint32_t> starts_;  ///< of each cell in order_
   std::vector<std::uint32_t> order_;
-  std::size_t occupied_cells_ = 0;
 };
 
 /// Root of the area that one point stands for, metres, from how many points the cells of a grid hold, at the points'
 /// median range; 0 where there are no points.
 double estimate_spacing(const ViewProjection& projection, std::span<const Point> points);
-
-/// Unit normals toward the viewpoint by least-squares planes through the neighbours within `radius` metres; zero where
-/// a point has fewer than three neighbours.
-std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<const Point> points, double radius);
-
-/// Points within `radius` metres of each point, itself included.
-std::vector<int> count_neighbors(const ViewProjection& projection, std::span<const Point> points, double radius);
 
 }  // namespace tubebin
