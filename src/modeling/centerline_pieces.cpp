@@ -3,8 +3,8 @@
 #include "tubebin/modeling/centerline_fitting.hpp"
 #include "tubebin/modeling/centerline_segmentation.hpp"
 #include "tubebin/modeling/flat_ends.hpp"
-#include "tubebin/modeling/piece_cleaning.hpp"
 #include "tubebin/modeling/normals.hpp"
+#include "tubebin/modeling/piece_cleaning.hpp"
 
 namespace tubebin {
 namespace {
@@ -42,7 +42,8 @@ FilteredCloud part_of(const FilteredCloud& cloud, Segment selected, const ViewPr
 FilteredCloud still_unexplained(const FilteredCloud& rest, const FilteredCloud& cloud,
                                 const std::vector<TubePiece>& pieces, const ViewProjection& projection, double radius) {
   Segment selected;
-  for (const std::uint32_t i : unexplained_points(rest.points, pieces, rest.spacing)) selected.push_back(rest.source[i]);
+  for (const std::uint32_t i : unexplained_points(rest.points, pieces, rest.spacing))
+    selected.push_back(rest.source[i]);
   return part_of(cloud, std::move(selected), projection, radius);
 }
 

@@ -141,7 +141,7 @@ double bounding_volume(const std::vector<PieceEnd>& ends, double radius) {
 /// Two ends that may be joined.
 struct Pair {
   std::uint32_t end_a, end_b;
-  double cost;           ///< of the bridge's shape and of ends that are seen to be free; with the scan's say, if final
+  double cost;  ///< of the bridge's shape and of ends that are seen to be free; with the scan's say, if final
   bool is_final = false;
 };
 
@@ -205,9 +205,9 @@ std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, cons
   return ends;
 }
 
-std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces,
-                                                const std::vector<PieceEnd>& ends, const OcclusionTest& occlusion,
-                                                double bending_rate, double length_limit, std::size_t joins_per_end) {
+std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
+                                                const OcclusionTest& occlusion, double bending_rate,
+                                                double length_limit, std::size_t joins_per_end) {
   std::vector<JoinCandidate> candidates;
   if (pieces.empty()) return candidates;
   const double radius = pieces.front().radius;

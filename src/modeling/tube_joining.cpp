@@ -122,9 +122,7 @@ class Joiner {
   }
 
   /// Ends are placed to a fraction of a radius, and a bridge's true course may be a twentieth longer.
-  double length_sigma(double bridged) const {
-    return std::sqrt(radius_ * radius_ / 16.0 + bridged * bridged / 400.0);
-  }
+  double length_sigma(double bridged) const { return std::sqrt(radius_ * radius_ / 16.0 + bridged * bridged / 400.0); }
 
   double end_cost(std::uint32_t end) const { return kHiddenEndCost * (1.0 - ends_[end].seen_free); }
 

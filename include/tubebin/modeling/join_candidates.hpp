@@ -38,8 +38,8 @@ std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, cons
 /// The pairs of ends whose join the evidence does not rule out, cheapest first: of each end its `joins_per_end` cheapest,
 /// and those that are among the other end's. `length_limit`: the longest that two pieces and their bridge may be
 /// together, metres.
-std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces,
-                                                const std::vector<PieceEnd>& ends, const OcclusionTest& occlusion,
-                                                double bending_rate, double length_limit, std::size_t joins_per_end);
+std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
+                                                const OcclusionTest& occlusion, double bending_rate,
+                                                double length_limit, std::size_t joins_per_end);
 
 }  // namespace tubebin
