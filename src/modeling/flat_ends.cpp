@@ -53,10 +53,15 @@ std::optional<FlatEnd> find_flat_end(const Vec3& tip, const Vec3& outward, const
   return end;
 }
 
-/// Polylines that end in the flat end: straight from one of the last nodes, or with a joint where the flat end's axis
+/// Polylines that end in the flat end: the last cylinder made longer or shorter, straight from one of the last nodes, or with a joint where the flat end's axis
 /// passes nearest to the cylinder before. Only nodes near the end may go or move.
 std::vector<std::vector<Vec3>> possible_courses(const std::vector<Vec3>& nodes, const FlatEnd& end, double radius) {
   std::vector<std::vector<Vec3>> courses;
+  const Vec3 last = (nodes.back() - nodes[nodes.size() - 2]).normalized();
+  if (last.dot(end.outward) > 0.64) {
+    courses.push_back(nodes);
+    courses.back().back() += (end.center - nodes.back()).dot(end.outward) / last.dot(end.outward) * last;
+  }
   const auto is_near = [&](std::size_t k) { return (nodes[k] - nodes.back()).norm() < 3.0 * radius; };
   const std::size_t first = nodes.size() > 4 ? nodes.size() - 4 : 1;
   for (std::size_t keep = first; keep <= nodes.size(); ++keep) {

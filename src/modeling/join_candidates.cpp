@@ -44,8 +44,9 @@ Vec3 angle_vector(const Vec3& from, const Vec3& to) {
 double shape_cost(const PieceEnd& a, const PieceEnd& b, double bending_rate, double radius, double end_density) {
   const Vec3 chord = b.position - a.position;
   const double length = std::max(chord.norm(), radius);
-  // Where the ends overlap or all but touch, their chord has no direction of its own.
-  const Vec3 along = chord.norm() > radius / 2.0 ? chord.normalized() : (a.outward - b.outward).normalized();
+  // Nearer than a radius, where no two tubes' ends can lie side by side, ends overlap or fall short of a bend: their
+  // chord has no direction of its own.
+  const Vec3 along = chord.norm() > radius ? chord.normalized() : (a.outward - b.outward).normalized();
   const Vec3 leave = angle_vector(along, a.outward);
   const Vec3 arrive = angle_vector(along, -b.outward);
   const double energy = 4.0 * (leave.squaredNorm() + leave.dot(arrive) + arrive.squaredNorm()) / length;
@@ -189,8 +190,9 @@ std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, cons
     for (const auto& [tip, inner] : {std::pair(n.front(), n[1]), std::pair(n.back(), n[n.size() - 2])}) {
       PieceEnd end{.position = tip, .outward = (tip - inner).normalized()};
       // A cylinder of length l fitted to points with errors of about r / 20 (the curve's tolerance) points that much
-      // over l astray.
-      const double astray = piece.radius / 10.0 / std::max((tip - inner).norm(), piece.radius / 2.0);
+      // over l astray; a fragment's axis is known to a quarter of a radius at best.
+      const double error = is_fragment(piece) ? piece.radius / 4.0 : piece.radius / 20.0;
+      const double astray = 2.0 * error / std::max((tip - inner).norm(), piece.radius / 2.0);
       end.direction_variance = 2.0 * astray * astray;
       StretchEvidence beyond;
       for (const double reach : {0.5, 0.75, 1.0}) {

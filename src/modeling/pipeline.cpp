@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tubebin/core/error.hpp"
+#include "tubebin/modeling/centerline_fitting.hpp"
 #include "tubebin/modeling/centerline_pieces.hpp"
 #include "tubebin/modeling/centerline_segmentation.hpp"
 #include "tubebin/modeling/labeling.hpp"
@@ -29,12 +30,16 @@ class Stopwatch {
 
 /// From the normals at first, then from what the points about the longest pieces say.
 double find_radius(const FilteredCloud& cloud, const ViewProjection& projection) {
-  const double first = estimate_radius(cloud.points, cloud.normals, cloud.spacing);
+  constexpr std::size_t kPieces = 5;
+  const double first = estimate_radius(cloud.points, cloud.normals, projection, cloud.spacing);
   if (first <= 0.0) return 0.0;
   auto segments = segment_by_votes(cloud, first);
   std::sort(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) { return a.size() > b.size(); });
-  if (segments.size() > 5) segments.resize(5);
-  return refine_radius(find_centerline_pieces(cloud, segments, projection, first), cloud.points, first);
+  const Vec3 viewpoint = projection.viewpoint().cast<double>();
+  std::vector<TubePiece> pieces;
+  for (std::size_t k = 0; k < segments.size() && pieces.size() < kPieces; ++k)
+    if (auto piece = fit_centerline(cloud, segments[k], {}, first, viewpoint)) pieces.push_back(std::move(*piece));
+  return refine_radius(pieces, cloud.points, first);
 }
 
 std::vector<TubePiece> find_cylinder_pieces(const FilteredCloud& cloud, const std::vector<Segment>& segments,

@@ -4,6 +4,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "tubebin/modeling/view_grid.hpp"
 
 namespace tubebin {
 namespace {
@@ -35,18 +38,30 @@ double cylinder_curvature(const Point& p, const Point& n, const std::vector<std:
 
 }  // namespace
 
-double estimate_radius(const std::vector<Point>& points, const std::vector<Point>& normals, double spacing) {
+double estimate_radius(const std::vector<Point>& points, const std::vector<Point>& normals,
+                       const ViewProjection& projection, double spacing) {
+  if (points.empty()) return 0.0;
   // Some hundred places are enough for a median. Neighbours within four spacings, about fifty of them.
   constexpr std::size_t kPlaces = 400;
   const std::size_t stride = points.size() / kPlaces + 1;
-  const auto squared_reach = static_cast<float>(16.0 * spacing * spacing);
+  const double reach = 4.0 * spacing;
+  const auto squared_reach = static_cast<float>(reach * reach);
+  float nearest = std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < points.size(); i += stride)
+    nearest = std::min(nearest, (points[i] - projection.viewpoint()).norm());
+  const ViewGrid grid(projection, points, static_cast<float>(reach / std::max(double(nearest), reach)));
   std::vector<double> radii;
   for (std::size_t i = 0; i < points.size(); i += stride) {
     if (normals[i].isZero()) continue;
     std::vector<std::pair<Point, Point>> neighbors;
-    for (std::size_t j = 0; j < points.size(); ++j)
-      if ((points[j] - points[i]).squaredNorm() < squared_reach && normals[j].dot(normals[i]) > 0.5f)
-        neighbors.emplace_back(points[j], normals[j]);
+    for (int row = grid.row(i) - 1; row <= grid.row(i) + 1; ++row) {
+      const auto [first, last] = grid.range(row, grid.column(i) - 1, grid.column(i) + 1);
+      for (std::uint32_t k = first; k < last; ++k) {
+        const std::uint32_t j = grid.order()[k];
+        if ((points[j] - points[i]).squaredNorm() < squared_reach && normals[j].dot(normals[i]) > 0.5f)
+          neighbors.emplace_back(points[j], normals[j]);
+      }
+    }
     const double curvature = neighbors.size() < 6 ? 0.0 : cylinder_curvature(points[i], normals[i], neighbors);
     if (curvature > 0.0) radii.push_back(1.0 / curvature);
   }

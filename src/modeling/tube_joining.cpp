@@ -58,6 +58,7 @@ class Joiner {
   /// The joins of the best cover under the current tube length.
   void solve() {
     chains_.clear();
+    chain_of_key_.clear();
     for (std::uint32_t end = 0; end < ends_.size(); ++end) {
       budget_ = kPathLimit;
       Chain chain;
@@ -139,52 +140,76 @@ class Joiner {
     return std::min(0.5 * unexplained * unexplained / (sigma * sigma), fragment ? kFragmentCostLimit : kShortCostLimit);
   }
 
-  void extend(const Chain& chain) {
+  void extend(Chain& chain) {
     if (budget_ == 0) return;
     --budget_;
     // Each chain is found from both sides: the one that starts at the lower end counts.
-    if (chain.first_end < chain.last_end) {
-      chains_.push_back(chain);
-      chains_.back().path.cost =
-          chain.join_cost + length_cost(chain) + end_cost(chain.first_end) + end_cost(chain.last_end);
-    }
+    if (chain.first_end < chain.last_end) keep_if_cheapest(chain);
     for (const std::uint32_t j : joins_of_end_[chain.last_end]) {
       // Without a length to explain, a join has to be likelier than not by itself.
       if (tube_length_ <= 0.0 && joins_[j].cost > 0.0) break;
       const std::uint32_t entered = joins_[j].end_a == chain.last_end ? joins_[j].end_b : joins_[j].end_a;
-      const std::uint32_t piece = entered / 2;
       const auto taken = [&](std::uint32_t k) {
         return std::find(chain.path.items.begin(), chain.path.items.end(), k) != chain.path.items.end();
       };
-      if (taken(piece) || std::any_of(joins_[j].absorbed.begin(), joins_[j].absorbed.end(), taken)) continue;
-      const double gap = bridge_lengths_[j];
-      if (chain.length + gap + lengths_[piece] > longest()) continue;
-      Chain next = chain;
-      next.pieces.push_back(piece);
-      next.key ^= piece_keys_[piece];
-      for (const std::uint32_t fragment : joins_[j].absorbed) next.key ^= piece_keys_[fragment];
-      next.path.items.push_back(piece);
-      next.path.items.insert(next.path.items.end(), joins_[j].absorbed.begin(), joins_[j].absorbed.end());
-      next.joins.push_back(j);
-      next.last_end = entered ^ 1U;
-      next.join_cost += joins_[j].cost;
-      next.length += gap + lengths_[piece];
-      next.bridged += gap;
-      extend(next);
+      if (taken(entered / 2) || std::any_of(joins_[j].absorbed.begin(), joins_[j].absorbed.end(), taken)) continue;
+      if (chain.length + bridge_lengths_[j] + lengths_[entered / 2] > longest()) continue;
+      const std::uint32_t left = chain.last_end;
+      append(chain, j, entered);
+      extend(chain);
+      take_back(chain, j, left);
     }
   }
 
-  /// Drops the chains that no best cover needs: of those that hold the same pieces all but the cheapest, and those that
-  /// cost no less than their two parts do when cut at one of their joins.
-  void drop_dominated() {
-    std::unordered_map<std::uint64_t, std::size_t> best;
-    for (std::size_t c = 0; c < chains_.size(); ++c) {
-      const auto [entry, added] = best.emplace(chains_[c].key, c);
-      if (!added && chains_[c].path.cost < chains_[entry->second].path.cost) entry->second = c;
+  void append(Chain& chain, std::uint32_t join, std::uint32_t entered) const {
+    const std::uint32_t piece = entered / 2;
+    const auto& absorbed = joins_[join].absorbed;
+    chain.pieces.push_back(piece);
+    chain.joins.push_back(join);
+    chain.path.items.push_back(piece);
+    chain.path.items.insert(chain.path.items.end(), absorbed.begin(), absorbed.end());
+    chain.key ^= key_of(piece, absorbed);
+    chain.last_end = entered ^ 1U;
+    chain.join_cost += joins_[join].cost;
+    chain.length += bridge_lengths_[join] + lengths_[piece];
+    chain.bridged += bridge_lengths_[join];
+  }
+
+  void take_back(Chain& chain, std::uint32_t join, std::uint32_t left) const {
+    const std::uint32_t piece = chain.pieces.back();
+    const auto& absorbed = joins_[join].absorbed;
+    chain.pieces.pop_back();
+    chain.joins.pop_back();
+    chain.path.items.resize(chain.path.items.size() - 1 - absorbed.size());
+    chain.key ^= key_of(piece, absorbed);
+    chain.last_end = left;
+    chain.join_cost -= joins_[join].cost;
+    chain.length -= bridge_lengths_[join] + lengths_[piece];
+    chain.bridged -= bridge_lengths_[join];
+  }
+
+  std::uint64_t key_of(std::uint32_t piece, const std::vector<std::uint32_t>& absorbed) const {
+    std::uint64_t key = piece_keys_[piece];
+    for (const std::uint32_t fragment : absorbed) key ^= piece_keys_[fragment];
+    return key;
+  }
+
+  /// Of the chains that hold the same pieces, no best cover needs any but the cheapest.
+  void keep_if_cheapest(Chain& chain) {
+    chain.path.cost = chain.join_cost + length_cost(chain) + end_cost(chain.first_end) + end_cost(chain.last_end);
+    const auto [entry, added] = chain_of_key_.try_emplace(chain.key, chains_.size());
+    if (added) {
+      chains_.push_back(chain);
+    } else if (chain.path.cost < chains_[entry->second].path.cost) {
+      chains_[entry->second] = chain;
     }
+  }
+
+  /// No best cover needs a chain that costs no less than its two parts do when cut at one of its joins.
+  void drop_dominated() {
     const auto cost_of = [&](std::uint64_t key) {
-      const auto entry = best.find(key);
-      return entry == best.end() ? std::numeric_limits<double>::infinity() : chains_[entry->second].path.cost;
+      const auto entry = chain_of_key_.find(key);
+      return entry == chain_of_key_.end() ? std::numeric_limits<double>::infinity() : chains_[entry->second].path.cost;
     };
     const auto better_cut = [&](const Chain& chain) {
       std::uint64_t front = 0;
@@ -202,8 +227,8 @@ class Joiner {
       return false;
     };
     std::vector<Chain> kept;
-    for (std::size_t c = 0; c < chains_.size(); ++c)
-      if (best.at(chains_[c].key) == c && !better_cut(chains_[c])) kept.push_back(chains_[c]);
+    for (const Chain& chain : chains_)
+      if (!better_cut(chain)) kept.push_back(chain);
     chains_ = std::move(kept);
   }
 
@@ -265,6 +290,7 @@ class Joiner {
   std::vector<std::vector<std::uint32_t>> joins_of_end_;
   std::vector<std::vector<bool>> collides_;  ///< of joins i and j: their bridges take up one place
   std::vector<Chain> chains_;
+  std::unordered_map<std::uint64_t, std::size_t> chain_of_key_;  ///< while chains are found
   std::size_t budget_ = 0;
 };
 

@@ -10,7 +10,8 @@ namespace tubebin {
 
 /// The median radius of curvature of the surface, metres: on a cylinder, normals turn by 1 / r a metre across the axis
 /// and not at all along it. 0 where the surface does not curve that way.
-double estimate_radius(const std::vector<Point>& points, const std::vector<Point>& normals, double spacing);
+double estimate_radius(const std::vector<Point>& points, const std::vector<Point>& normals,
+                       const ViewProjection& projection, double spacing);
 
 /// The median radius of the circles that fit the points about the pieces' cylinders, seen along their axes (Kasa
 /// 1976), metres; `radius` where no cylinder is long enough to tell.
