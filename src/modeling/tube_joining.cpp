@@ -80,29 +80,56 @@ class Joiner {
     chains_ = std::move(chosen);
   }
 
-  /// The length that tubes with both ends in sight agree on, 0 without at least two that do. Nothing shorter than a
-  /// single piece can be it. Of several such lengths the one with the most tube to it counts: chance shortens tubes,
-  /// by missed joins, and lengthens none.
-  double common_length() const {
-    const double longest_piece = *std::max_element(lengths_.begin(), lengths_.end());
-    const double tolerance = 4.0 * length_sigma(0.0);
+  /// The lengths of the tubes with both ends in sight, shortest first.
+  std::vector<double> seen_lengths() const {
     std::vector<double> seen;
     for (const Chain& chain : chains_)
-      if (ends_[chain.first_end].seen_free > 0.5 && ends_[chain.last_end].seen_free > 0.5 &&
-          chain.length > longest_piece - tolerance)
-        seen.push_back(chain.length);
+      if (ends_[chain.first_end].seen_free > 0.5 && ends_[chain.last_end].seen_free > 0.5) seen.push_back(chain.length);
     std::sort(seen.begin(), seen.end());
+    return seen;
+  }
+
+  /// The length that tubes with both ends in sight agree on, 0 without at least two that do, and more than there are
+  /// single pieces longer than it. Of several such lengths the one with the most tube to it counts: chance shortens
+  /// tubes, by missed joins, and lengthens few.
+  double common_length() const {
+    const double tolerance = length_tolerance();
+    const std::vector<double> seen = seen_lengths();
     double common = 0.0, most = 0.0;
     for (std::size_t first = 0; first < seen.size(); ++first) {
       std::size_t last = first;
       double sum = 0.0;
       while (last < seen.size() && seen[last] <= seen[first] + tolerance) sum += seen[last++];
-      if (last - first >= 2 && sum > most) most = sum, common = seen[first + (last - first) / 2];
+      const auto longer = static_cast<std::size_t>(std::count_if(
+          lengths_.begin(), lengths_.end(), [&](double length) { return length > seen[first] + tolerance; }));
+      if (last - first >= 2 && last - first > longer && sum > most)
+        most = sum, common = seen[first + (last - first) / 2];
     }
     return common;
   }
 
-  void set_tube_length(double length) { tube_length_ = length; }
+  /// Whether two tubes with both ends in sight have this length.
+  bool is_confirmed(double length) const {
+    const std::vector<double> seen = seen_lengths();
+    return std::count_if(seen.begin(), seen.end(),
+                         [&](double other) { return std::abs(other - length) < length_tolerance() / 2.0; }) >= 2;
+  }
+
+  /// Once the tubes' common length is known, joins that complete a tube are likelier and those that exceed it ruled
+  /// out. Where no two tubes are in sight from end to end, the length of one may be confirmed by what it completes.
+  void solve_with_common_length() {
+    tube_length_ = common_length();
+    if (tube_length_ > 0.0) return solve();
+    const std::vector<double> seen = seen_lengths();
+    const std::vector<Chain> without = chains_;
+    for (auto length = seen.rbegin(); length != seen.rend(); ++length) {
+      tube_length_ = *length;
+      solve();
+      if (is_confirmed(*length)) return;
+    }
+    tube_length_ = 0.0;
+    chains_ = without;
+  }
 
   Joining result() const {
     Joining joining{
@@ -124,6 +151,8 @@ class Joiner {
 
   /// Ends are placed to a fraction of a radius, and a bridge's true course may be a twentieth longer.
   double length_sigma(double bridged) const { return std::sqrt(radius_ * radius_ / 16.0 + bridged * bridged / 400.0); }
+
+  double length_tolerance() const { return 4.0 * length_sigma(0.0); }
 
   double end_cost(std::uint32_t end) const { return kHiddenEndCost * (1.0 - ends_[end].seen_free); }
 
@@ -300,10 +329,7 @@ Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& o
   if (pieces.empty()) return {.tubes = {}, .tube_of_piece = {}, .tube_length = tube_length};
   Joiner joiner(pieces, occlusion, tube_length);
   joiner.solve();
-  if (tube_length <= 0.0) {
-    joiner.set_tube_length(joiner.common_length());
-    joiner.solve();
-  }
+  if (tube_length <= 0.0) joiner.solve_with_common_length();
   return joiner.result();
 }
 
