@@ -10,20 +10,18 @@
 namespace tubebin {
 namespace {
 
-using Compatible = std::function<bool(std::uint32_t, std::uint32_t)>;
-
 /// One part of the problem: items that candidates link, and those candidates.
 class PartSolver {
  public:
-  PartSolver(std::span<const PathCandidate> candidates, const Compatible& compatible, std::vector<std::uint32_t> items,
-             std::vector<std::uint32_t> open, std::size_t item_count, std::size_t node_limit)
+  PartSolver(std::span<const PathCandidate> candidates, std::vector<std::uint32_t> items,
+             std::vector<std::uint32_t> open, std::size_t item_count, std::size_t place_count, std::size_t node_limit)
       : candidates_(candidates),
-        compatible_(compatible),
         items_(std::move(items)),
         open_(std::move(open)),
         nodes_left_(node_limit),
         price_(item_count, 0.0),
         covered_(item_count, false),
+        exclusions_(place_count, 0),
         candidates_of_item_(item_count) {
     for (const std::uint32_t i : items_) price_[i] = std::numeric_limits<double>::infinity();
     for (const std::uint32_t c : open_)
@@ -34,30 +32,36 @@ class PartSolver {
   std::vector<std::uint32_t> solve() {
     take_greedily();
     raise_prices();
-    keep_promising();
+    drop_hopeless(price_);
+    sort_by_item();
     branch(0.0, bound_);
     return best_;
   }
 
  private:
-  double reduced_cost(std::uint32_t c) const {
+  double reduced_cost(std::uint32_t c) const { return reduced_cost(c, price_); }
+  double reduced_cost(std::uint32_t c, const std::vector<double>& prices) const {
     double cost = candidates_[c].cost;
-    for (const std::uint32_t i : candidates_[c].items) cost -= price_[i];
+    for (const std::uint32_t i : candidates_[c].items) cost -= prices[i];
     return cost;
   }
 
   bool fits(std::uint32_t c) const {
     for (const std::uint32_t item : candidates_[c].items)
       if (covered_[item]) return false;
-    return std::all_of(chosen_.begin(), chosen_.end(), [&](std::uint32_t other) { return compatible_(c, other); });
+    for (const std::uint32_t place : candidates_[c].places)
+      if (exclusions_[place] > 0) return false;
+    return true;
   }
 
   void choose(std::uint32_t c) {
     for (const std::uint32_t item : candidates_[c].items) covered_[item] = true;
+    for (const std::uint32_t place : candidates_[c].excludes) ++exclusions_[place];
     chosen_.push_back(c);
   }
   void take_back() {
     for (const std::uint32_t item : candidates_[chosen_.back()].items) covered_[item] = false;
+    for (const std::uint32_t place : candidates_[chosen_.back()].excludes) --exclusions_[place];
     chosen_.pop_back();
   }
 
@@ -108,18 +112,24 @@ class PartSolver {
       if (squares == 0.0 || best_cost_ - bound_ < 1e-6) break;
       const double length = agility * std::max(best_cost_ - bound, 0.1) / squares;
       for (const std::uint32_t i : items_) price_[i] += length * (1 - surplus[i]);
-      if (step % 10 == 9) take_greedily();
+      if (step % 10 == 9) {
+        take_greedily();
+        drop_hopeless(best_prices);
+      }
     }
     price_ = best_prices;
     take_greedily();
   }
 
-  /// A candidate whose reduced cost exceeds the gap between the best cover and the bound is in no better cover.
-  void keep_promising() {
+  /// A candidate whose reduced cost exceeds the gap between the best cover and the bound, which these prices make, is
+  /// in no better cover.
+  void drop_hopeless(const std::vector<double>& prices) {
+    std::erase_if(open_, [&](std::uint32_t c) { return reduced_cost(c, prices) >= best_cost_ - bound_ + 1e-9; });
+  }
+
+  void sort_by_item() {
     std::vector<std::pair<double, std::uint32_t>> promising;
-    for (const std::uint32_t c : open_)
-      if (const double reduced = reduced_cost(c); reduced < best_cost_ - bound_ + 1e-9)
-        promising.emplace_back(reduced, c);
+    for (const std::uint32_t c : open_) promising.emplace_back(reduced_cost(c), c);
     std::sort(promising.begin(), promising.end());
     for (const auto& [reduced, c] : promising)
       for (const std::uint32_t i : candidates_[c].items) candidates_of_item_[i].push_back(c);
@@ -135,9 +145,12 @@ class PartSolver {
     for (const std::uint32_t i : items_) {
       if (covered_[i]) continue;
       open.clear();
-      for (const std::uint32_t c : candidates_of_item_[i])
+      const std::size_t fewest = is_covered ? SIZE_MAX : ways.size();
+      for (const std::uint32_t c : candidates_of_item_[i]) {
+        if (open.size() == fewest) break;
         if (fits(c)) open.push_back(c);
-      if (is_covered || open.size() < ways.size()) ways = open;
+      }
+      if (open.size() < fewest) ways.swap(open);
       is_covered = false;
       if (ways.size() <= 1) break;
     }
@@ -153,11 +166,11 @@ class PartSolver {
   }
 
   std::span<const PathCandidate> candidates_;
-  const Compatible& compatible_;
   std::vector<std::uint32_t> items_, open_;
   std::size_t nodes_left_;
   std::vector<double> price_;
   std::vector<bool> covered_;
+  std::vector<int> exclusions_;                                 ///< how many of the chosen exclude a place
   std::vector<std::vector<std::uint32_t>> candidates_of_item_;  ///< the promising ones, cheapest first
   std::vector<std::uint32_t> chosen_, best_;
   double best_cost_ = std::numeric_limits<double>::infinity();
@@ -167,7 +180,7 @@ class PartSolver {
 }  // namespace
 
 std::vector<std::uint32_t> cheapest_path_cover(std::size_t item_count, std::span<const PathCandidate> candidates,
-                                               const Compatible& compatible, std::size_t node_limit) {
+                                               std::size_t place_count, std::size_t node_limit) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
   for (const PathCandidate& candidate : candidates)
     for (const std::uint32_t item : candidate.items) links.emplace_back(candidate.items.front(), item);
@@ -182,7 +195,7 @@ std::vector<std::uint32_t> cheapest_path_cover(std::size_t item_count, std::span
 
   std::vector<std::uint32_t> cover;
   for (std::size_t part = 0; part < items.size(); ++part) {
-    const auto chosen = PartSolver(candidates, compatible, items[part], open[part], item_count, node_limit).solve();
+    const auto chosen = PartSolver(candidates, items[part], open[part], item_count, place_count, node_limit).solve();
     cover.insert(cover.end(), chosen.begin(), chosen.end());
   }
   std::sort(cover.begin(), cover.end());

@@ -72,10 +72,14 @@ class Joiner {
     }
     drop_dominated();
     std::vector<PathCandidate> paths;
-    for (const Chain& chain : chains_) paths.push_back(chain.path);
-    const auto compatible = [&](std::uint32_t a, std::uint32_t b) { return !bridges_collide(chains_[a], chains_[b]); };
+    for (const Chain& chain : chains_) {
+      paths.push_back(chain.path);
+      paths.back().places = chain.joins;
+      for (const std::uint32_t j : chain.joins)
+        paths.back().excludes.insert(paths.back().excludes.end(), collides_[j].begin(), collides_[j].end());
+    }
     std::vector<Chain> chosen;
-    for (const std::uint32_t c : cheapest_path_cover(pieces_.size(), paths, compatible, kNodeLimit))
+    for (const std::uint32_t c : cheapest_path_cover(pieces_.size(), paths, joins_.size(), kNodeLimit))
       chosen.push_back(chains_[c]);
     chains_ = std::move(chosen);
   }
@@ -261,15 +265,19 @@ class Joiner {
     chains_ = std::move(kept);
   }
 
+  /// Two bridges of different tubes cannot occupy one place.
   void find_colliding_joins() {
-    collides_.assign(joins_.size(), std::vector<bool>(joins_.size(), false));
+    collides_.resize(joins_.size());
     std::vector<Eigen::AlignedBox3d> boxes(joins_.size());
     for (std::size_t i = 0; i < joins_.size(); ++i)
       for (const Vec3& p : joins_[i].bridge) boxes[i].extend(p);
-    for (std::size_t i = 0; i < joins_.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (boxes[i].squaredExteriorDistance(boxes[j]) < radius_ * radius_)
-          collides_[i][j] = collides_[j][i] = bridges_meet(joins_[i].bridge, joins_[j].bridge, boxes[j]);
+    for (std::uint32_t i = 0; i < joins_.size(); ++i)
+      for (std::uint32_t j = 0; j < i; ++j)
+        if (boxes[i].squaredExteriorDistance(boxes[j]) < radius_ * radius_ &&
+            bridges_meet(joins_[i].bridge, joins_[j].bridge, boxes[j])) {
+          collides_[i].push_back(j);
+          collides_[j].push_back(i);
+        }
   }
 
   /// Less than a radius apart is no matter of the bridges' uncertain course.
@@ -279,14 +287,6 @@ class Joiner {
       for (const Vec3& q : b)
         if ((p - q).squaredNorm() < radius_ * radius_) return true;
     }
-    return false;
-  }
-
-  /// Two bridges of different tubes cannot occupy one place.
-  bool bridges_collide(const Chain& a, const Chain& b) const {
-    for (const std::uint32_t i : a.joins)
-      for (const std::uint32_t j : b.joins)
-        if (collides_[i][j]) return true;
     return false;
   }
 
@@ -317,7 +317,7 @@ class Joiner {
   std::vector<JoinCandidate> joins_;
   std::vector<double> bridge_lengths_;  ///< of the joins, metres
   std::vector<std::vector<std::uint32_t>> joins_of_end_;
-  std::vector<std::vector<bool>> collides_;  ///< of joins i and j: their bridges take up one place
+  std::vector<std::vector<std::uint32_t>> collides_;  ///< of each join: those whose bridges take up the same place
   std::vector<Chain> chains_;
   std::unordered_map<std::uint64_t, std::size_t> chain_of_key_;  ///< while chains are found
   std::size_t budget_ = 0;
