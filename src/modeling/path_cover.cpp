@@ -77,12 +77,14 @@ class PartSolver {
     for (const std::uint32_t c : open_) order.emplace_back(reduced_cost(c), c);
     std::sort(order.begin(), order.end());
     double cost = 0.0;
+    std::size_t held = 0;
     for (const auto& [reduced, c] : order) {
       if (!fits(c)) continue;
       choose(c);
       cost += candidates_[c].cost;
+      held += candidates_[c].items.size();
     }
-    keep_if_best(cost);
+    if (held == items_.size()) keep_if_best(cost);  // not so where hopeless paths are gone
     while (!chosen_.empty()) take_back();
   }
 
