@@ -20,8 +20,8 @@ constexpr double kShortCostLimit = 10.0;
 constexpr double kFragmentCostLimit = 3.0;
 constexpr std::size_t kNodeLimit = 2000;
 /// The right join is among an end's cheapest few, or it could not be told from chance anyhow.
-constexpr std::size_t kJoinsPerEnd = 5;
-constexpr std::size_t kPathLimit = 1000;
+constexpr std::size_t kJoinsPerEnd = 4;
+constexpr std::size_t kPathLimit = 300;
 
 /// A chain of pieces under construction: enters its last piece at one end and may leave it by the other.
 struct Chain {
