@@ -9,6 +9,7 @@
 #include "tubebin/modeling/centerline_pieces.hpp"
 #include "tubebin/modeling/centerline_segmentation.hpp"
 #include "tubebin/modeling/labeling.hpp"
+#include "tubebin/modeling/normals.hpp"
 #include "tubebin/modeling/radius_estimation.hpp"
 #include "tubebin/modeling/tube_joining.hpp"
 
@@ -29,7 +30,7 @@ class Stopwatch {
 };
 
 /// From the normals at first, then from what the points about the longest pieces say.
-double find_radius(const FilteredCloud& cloud, const ViewProjection& projection) {
+double estimate_radius_of(const FilteredCloud& cloud, const ViewProjection& projection) {
   constexpr std::size_t kPieces = 5;
   const double first = estimate_radius(cloud.points, cloud.normals, projection, cloud.spacing);
   if (first <= 0.0) return 0.0;
@@ -40,6 +41,17 @@ double find_radius(const FilteredCloud& cloud, const ViewProjection& projection)
   for (std::size_t k = 0; k < segments.size() && pieces.size() < kPieces; ++k)
     if (auto piece = fit_centerline(cloud, segments[k], {}, first, viewpoint)) pieces.push_back(std::move(*piece));
   return refine_radius(pieces, cloud.points, first);
+}
+
+/// Where points are sparse, normals from as many as a known radius would not let in are too flat: the radius that they
+/// give makes better ones, and those a better radius.
+double find_radius(FilteredCloud& cloud, const ViewProjection& projection) {
+  double radius = estimate_radius_of(cloud, projection);
+  const double reach = normal_radius(cloud.spacing, radius);
+  if (radius <= 0.0 || reach > 0.9 * normal_radius(cloud.spacing, 0.0)) return radius;
+  cloud.normals = estimate_normals(projection, cloud.points, reach);
+  if (const double refined = estimate_radius_of(cloud, projection); refined > 0.0) radius = refined;
+  return radius;
 }
 
 std::vector<TubePiece> find_cylinder_pieces(const FilteredCloud& cloud, const std::vector<Segment>& segments,
