@@ -11,6 +11,7 @@
 
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/dataset/cloud_files.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/dataset/folder_lock.hpp"
 #include "tubebin/dataset/whole_folder.hpp"
@@ -37,48 +38,13 @@ struct Run {
   std::string folder() const { return fmt::format("{}/{}_{}", scene, name_of(method), ratio); }
 };
 
-struct SceneName {
-  std::string set;
-  std::size_t tubes = 0;
-  int case_number = 0;
-};
-
-/// "A10/007" is set A, ten tubes, case 7; of another name only the first folder is known.
-SceneName parse_scene_name(const std::string& scene) {
-  const std::size_t slash = scene.find('/');
-  const std::string first = scene.substr(0, slash);
-  const std::size_t digits = first.find_last_not_of("0123456789") + 1;
-  SceneName name{.set = first};
-  if (slash == std::string::npos || digits == 0 || digits == first.size()) return name;
-  const std::string rest = scene.substr(slash + 1);
-  int case_number = 0;
-  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), case_number);
-  std::size_t tubes = 0;
-  const auto [tubes_end, tubes_error] = std::from_chars(first.data() + digits, first.data() + first.size(), tubes);
-  if (error != std::errc{} || end != rest.data() + rest.size() || tubes_error != std::errc{}) return name;
-  return {first.substr(0, digits), tubes, case_number};
-}
-
-/// Cloud files by scene name, scenes of fewer tubes first.
-std::vector<std::pair<std::string, std::string>> find_clouds(const BatchOptions& options) {
-  std::vector<std::pair<std::string, std::string>> clouds;
-  for (const auto& entry : fs::recursive_directory_iterator(options.dataset)) {
-    const fs::path path = entry.path();
-    const fs::path scene = fs::relative(path.parent_path(), options.dataset);
-    const bool is_hidden = scene.filename().string().starts_with('.') && scene != ".";
-    if ((path.filename() == "cloud.pcd" || path.filename() == "cloud.ply") && !is_hidden)
-      clouds.emplace_back(scene.string(), path.string());
-  }
-  if (clouds.empty()) throw_io_error("{}: holds no cloud.pcd or cloud.ply in any of its folders", options.dataset);
-  const auto key = [](const auto& cloud) {
-    const SceneName name = parse_scene_name(cloud.first);
-    return std::tuple(name.tubes, name.set, name.case_number, cloud.first);
-  };
-  std::sort(clouds.begin(), clouds.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+/// The data set's clouds, of each set and number of tubes the first ones alone where options say so.
+std::vector<CloudFile> choose_clouds(const BatchOptions& options) {
+  std::vector<CloudFile> clouds = find_clouds(options.dataset);
   if (options.cases > 0) {
     std::map<std::string, int> taken;
-    std::erase_if(clouds, [&](const auto& cloud) {
-      return ++taken[cloud.first.substr(0, cloud.first.find('/'))] > options.cases;
+    std::erase_if(clouds, [&](const CloudFile& cloud) {
+      return ++taken[cloud.scene.substr(0, cloud.scene.find('/'))] > options.cases;
     });
   }
   return clouds;
@@ -182,8 +148,7 @@ AttemptResult do_run(const Run& run, const BatchOptions& options, const ModelCon
   });
 }
 
-std::string format_index(const BatchOptions& options, const ModelConfig& config,
-                         const std::vector<std::pair<std::string, std::string>>& clouds) {
+std::string format_index(const BatchOptions& options, const ModelConfig& config, const std::vector<CloudFile>& clouds) {
   Json scenes = Json::array(), methods = Json::array();
   for (const auto& [scene, path] : clouds) scenes.push_back(scene);
   for (const ModelingMethod method : options.methods) methods.push_back(name_of(method));
@@ -230,8 +195,7 @@ std::string merge_index(const std::string& path, const std::string& wanted_text)
   return wanted.dump(1) + "\n";
 }
 
-std::vector<Run> list_runs(const BatchOptions& options,
-                           const std::vector<std::pair<std::string, std::string>>& clouds) {
+std::vector<Run> list_runs(const BatchOptions& options, const std::vector<CloudFile>& clouds) {
   std::vector<Run> runs;
   for (const auto& [scene, path] : clouds)
     for (const ModelingMethod method : options.methods)
@@ -277,7 +241,7 @@ std::vector<double> parse_ratios(const std::string& text) {
 
 BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config, Progress::Style progress_style) try {
   const auto start = std::chrono::steady_clock::now();
-  const auto clouds = find_clouds(options);
+  const auto clouds = choose_clouds(options);
   fs::create_directories(options.results);
   const FolderLock lock(options.results);
   const std::string index = options.results + "/index.json";

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "file_descriptor.hpp"
@@ -46,9 +47,16 @@ class UnfinishedFolder {
   UnfinishedFolder(const UnfinishedFolder&) = delete;
   UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
 
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  /// The file's path; the folders between are made.
+  std::string file(const std::string& name) {
+    const fs::path file = path_ / name;
+    for (fs::path folder = file.parent_path(); folder != path_; folder = folder.parent_path()) inner_.insert(folder);
+    fs::create_directories(file.parent_path());
+    return file.string();
+  }
 
   void rename_to_final() const {
+    for (const fs::path& folder : inner_) sync_folder(folder);
     sync_folder(path_);
     fs::remove_all(scene_);
     fs::rename(path_, scene_);
@@ -58,6 +66,7 @@ class UnfinishedFolder {
  private:
   fs::path scene_;
   fs::path path_;
+  std::set<fs::path> inner_;
 };
 
 /// A new file whose bytes are on their way to the disk, and there after sync().

@@ -19,7 +19,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"render", {"core", "tube", "cloud", "scene"}},
     {"modeling", {"core", "tube", "cloud", "scene"}},
     {"evaluation", {"core", "tube", "cloud", "scene"}},
-    {"dataset", {"core", "tube", "cloud", "scene", "physics", "scan", "render", "modeling", "evaluation"}}};
+    {"export", {"core", "tube", "cloud", "scene", "physics", "scan", "render"}},
+    {"dataset", {"core", "tube", "cloud", "scene", "physics", "scan", "render", "modeling", "evaluation", "export"}}};
 
 std::vector<std::string> included_by(const fs::path& file) {
   static const std::regex include(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");

@@ -7,7 +7,7 @@
 
 namespace tubebin {
 
-/// Begins to write the files (bytes by name) into a hidden sibling of `path`. The returned function waits until they
+/// Begins to write the files (bytes by path beneath it) into a hidden sibling of `path`. The returned function waits until they
 /// are on the disk and renames the sibling to `path`, in the place of what was there; without its call nothing is
 /// left. Both throw IoError.
 std::function<void()> begin_whole_folder(const std::string& path, const std::map<std::string, std::string>& files);

@@ -1,0 +1,236 @@
+#include "tubebin/dataset/export_dataset.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/dataset/cloud_files.hpp"
+#include "tubebin/dataset/dataset_folder.hpp"
+#include "tubebin/dataset/manifest.hpp"
+#include "tubebin/dataset/whole_folder.hpp"
+#include "tubebin/dataset/worker_pool.hpp"
+#include "tubebin/export/formats.hpp"
+
+namespace tubebin {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kIndexFormat = "tubebin export 1";
+
+/// The settings of the drop, which Gazebo goes on with; of a data set without a configuration, the defaults.
+PhysicsOptions physics_of(const std::string& dataset) {
+  return fs::exists(dataset + "/config.yaml") ? read_dataset_config(dataset).physics : PhysicsOptions{};
+}
+
+const std::map<std::string, std::function<std::unique_ptr<ExportFormat>(const std::string& dataset)>>& formats() {
+  static const std::map<std::string, std::function<std::unique_ptr<ExportFormat>(const std::string&)>> formats = {
+      {"bop", [](const std::string&) { return bop_format(); }},
+      {"coco", [](const std::string&) { return coco_format(); }},
+      {"npz", [](const std::string&) { return npz_format(); }},
+      {"ply", [](const std::string&) { return ply_format(); }},
+      {"sdf", [](const std::string& dataset) { return sdf_format(physics_of(dataset)); }}};
+  return formats;
+}
+
+/// One line of the output's index: a scene, and what it was made from.
+struct IndexLine {
+  std::string scene;
+  std::size_t tubes = 0;
+  std::string scene_json_xxh128;
+
+  friend bool operator==(const IndexLine&, const IndexLine&) = default;
+};
+
+struct Source {
+  IndexLine line;
+  std::string cloud;
+};
+
+std::vector<Source> list_sources(const std::string& dataset) {
+  if (!fs::is_directory(dataset)) throw_io_error("{}: is no data set: not a folder", dataset);
+  std::vector<Source> sources;
+  for (const CloudFile& cloud : find_clouds(dataset)) {
+    if (cloud.scene == ".") throw_io_error("{}: is a single scene; give the folder of its data set", dataset);
+    const std::string path = dataset + "/" + cloud.scene + "/scene.json";
+    const std::string text = read_file(path);
+    const std::size_t tubes = parse_scene_json(text, path).scene.tubes.size();
+    sources.push_back({{cloud.scene, tubes, record_bytes(text).xxh128}, cloud.path});
+  }
+  return sources;
+}
+
+std::vector<IndexLine> read_index(const std::string& path, const std::string& format) try {
+  const Json index = Json::parse(read_file(path));
+  const auto expect = [&](const char* key, const std::string& wanted) {
+    if (const std::string held = index.at(key); held != wanted)
+      throw_config_error("{}: this export has {} {}, not {}; choose another --output", path, key, held, wanted);
+  };
+  expect("format", kIndexFormat);
+  expect("export", format);
+  expect("tool_version", tool_version());
+  std::vector<IndexLine> lines;
+  for (const Json& scene : index.at("scenes"))
+    lines.push_back({scene.at("scene"), scene.at("tubes"), scene.at("scene_json_xxh128")});
+  return lines;
+} catch (const Json::exception& error) {
+  throw_io_error("{}: is no index of an export: {}", path, error.what());
+}
+
+std::string format_index(const std::vector<Source>& sources, const std::string& format) {
+  Json scenes = Json::array();
+  for (const Source& source : sources)
+    scenes.push_back({{"scene", source.line.scene},
+                      {"tubes", source.line.tubes},
+                      {"scene_json_xxh128", source.line.scene_json_xxh128}});
+  return Json{{"format", kIndexFormat}, {"export", format}, {"tool_version", tool_version()}, {"scenes", scenes}}.dump(
+             1) +
+         "\n";
+}
+
+/// The sources in the order of what `output` holds already, so that scenes keep their numbers; new ones follow.
+std::vector<Source> continue_index(const std::string& path, const std::vector<IndexLine>& held,
+                                   std::vector<Source> sources) {
+  std::vector<Source> ordered;
+  for (const IndexLine& line : held) {
+    const auto source = std::ranges::find(sources, line.scene, [](const Source& s) { return s.line.scene; });
+    if (source == sources.end() || source->line != line)
+      throw_config_error("{}: was made from another data set: scene {} {}; choose another --output", path, line.scene,
+                         source == sources.end() ? "is not in this one" : "is another one there");
+    ordered.push_back(std::move(*source));
+    sources.erase(source);
+  }
+  std::ranges::move(sources, std::back_inserter(ordered));
+  return ordered;
+}
+
+/// Locked, with an index that says what it is made from.
+std::vector<Source> settle_index(const ExportOptions& options) {
+  const std::string path = options.output + "/index.json";
+  std::vector<Source> sources = list_sources(options.dataset);
+  if (fs::exists(path)) {
+    sources = continue_index(path, read_index(path, options.format), std::move(sources));
+  } else {
+    for (const fs::directory_entry& entry : fs::directory_iterator(options.output))
+      if (const std::string name = entry.path().filename(); !name.starts_with('.') && !name.starts_with("index.json."))
+        throw_config_error("{}: holds files, but no export (index.json is missing); choose a new or empty folder",
+                           options.output);
+  }
+  write_file_atomically(path, format_index(sources, options.format));
+  return sources;
+}
+
+std::vector<SceneEntry> number_scenes(const std::vector<Source>& sources) {
+  std::vector<SceneEntry> entries;
+  int first_object = 1;
+  for (const Source& source : sources) {
+    const int tubes = static_cast<int>(source.line.tubes);
+    entries.push_back({source.line.scene, static_cast<int>(entries.size()) + 1, first_object, tubes});
+    first_object += tubes;
+  }
+  return entries;
+}
+
+void write_below(const std::string& output, const Files& files) {
+  for (const auto& [name, bytes] : files) {
+    const std::string path = output + "/" + name;
+    fs::create_directories(fs::path(path).parent_path());
+    write_file_atomically(path, bytes);
+  }
+}
+
+/// In a worker process.
+AttemptResult export_one(const ExportFormat& format, const std::string& output, const Source& source,
+                         const SceneEntry& entry) {
+  SceneFiles files;
+  try {
+    const std::string folder = fs::path(source.cloud).parent_path().string();
+    files = format.export_scene({entry, read_scene_json(folder + "/scene.json"), read_cloud(source.cloud)});
+  } catch (const IoError& error) {
+    return failed_attempt("unreadable", error.what());  // this scene's fault: the others go on
+  }
+  write_below(output, files.beside);
+  const std::string path = output + "/" + format.scene_path(entry);
+  if (const auto alone = files.scene.find(""); alone != files.scene.end()) {
+    fs::create_directories(fs::path(path).parent_path());
+    write_file_atomically(path, alone->second);
+    return successful_attempt("");
+  }
+  return successful_attempt([finish = begin_whole_folder(path, files.scene)] {
+    finish();
+    return std::string();
+  });
+}
+
+void remove_unfinished(const std::string& output) {
+  std::vector<fs::path> unfinished;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(output))
+    if (entry.is_directory() && is_unfinished_folder(entry.path().string())) unfinished.push_back(entry.path());
+  for (const fs::path& path : unfinished) fs::remove_all(path);
+}
+
+}  // namespace
+
+std::vector<std::string> export_format_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, make] : formats()) names.push_back(name);
+  return names;
+}
+
+ExportReport export_dataset(const ExportOptions& options, Progress::Style progress_style) try {
+  const auto start = std::chrono::steady_clock::now();
+  const auto known = formats().find(options.format);
+  if (known == formats().end())
+    throw_config_error("--format {}: unknown; one of {}", options.format, fmt::join(export_format_names(), ", "));
+  if (!fs::exists(options.output)) list_sources(options.dataset);  // leaves no folder where there is nothing to export
+  fs::create_directories(options.output);
+  const FolderLock lock(options.output);
+  const std::vector<Source> sources = settle_index(options);
+  const std::vector<SceneEntry> entries = number_scenes(sources);
+  const std::unique_ptr<ExportFormat> format = known->second(options.dataset);
+  remove_unfinished(options.output);
+
+  const auto is_complete = [&](const SceneEntry& entry) {
+    return fs::exists(options.output + "/" + format->scene_path(entry));
+  };
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    if (!is_complete(entries[i])) missing.push_back(i);
+  ExportReport report{.scenes = entries.size(), .complete_before = entries.size() - missing.size(), .failed = {}};
+  Progress progress(missing.size(), "scenes", progress_style);
+  const PoolEvents events{.on_finished =
+                              [&](const JobOutcome& outcome) {
+                                progress.count_done();
+                                if (outcome.succeeded) return;
+                                const FailedAttempt& last = outcome.failed.back();
+                                report.failed.push_back(fmt::format("{}: {}", entries[outcome.job].name,
+                                                                    last.detail.empty() ? last.reason : last.detail));
+                              },
+                          .on_tick = [&] { progress.show(); }};
+  const PoolReport pool = run_jobs(
+      missing, {.workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit},
+      [&](std::size_t job, int) { return export_one(*format, options.output, sources[job], entries[job]); }, events);
+  report.made = pool.succeeded;
+  report.signal = pool.signal;
+  if (report.signal == 0) {
+    std::vector<SceneEntry> complete;
+    std::ranges::copy_if(entries, std::back_inserter(complete), is_complete);
+    write_below(options.output, format->summarize(complete, options.output));
+  }
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+} catch (const fs::filesystem_error& error) {
+  throw_io_error("{}", error.what());
+} catch (const Json::exception& error) {
+  throw_io_error("{}: holds a damaged file: {}", options.output, error.what());
+}
+
+}  // namespace tubebin

@@ -1,0 +1,109 @@
+#include <nlohmann/json.hpp>
+
+#include "export/scene_image.hpp"
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/export/formats.hpp"
+
+namespace tubebin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kAnnotations = "annotations.json";
+constexpr const char* kImage = "image.png";
+constexpr int kTubeCategory = 1;
+
+/// COCO's run lengths: down the columns, first those outside.
+Json run_lengths(const Mask& mask) {
+  Json counts = Json::array();
+  bool inside = false;
+  std::size_t run = 0;
+  for (int column = 0; column < mask.width; ++column)
+    for (int row = 0; row < mask.height; ++row) {
+      const auto i =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(mask.width) + static_cast<std::size_t>(column);
+      if ((mask.values[i] != 0) != inside) {
+        counts.push_back(run);
+        run = 0;
+        inside = !inside;
+      }
+      ++run;
+    }
+  counts.push_back(run);
+  return {{"size", {mask.height, mask.width}}, {"counts", std::move(counts)}};
+}
+
+Json box_json(const Mask& mask) {
+  const PixelBox box = box_of(mask);
+  return {box.x, box.y, box.width, box.height};
+}
+
+Json image_json(const SceneEntry& entry, const Camera& camera) {
+  return {{"id", entry.number},
+          {"file_name", entry.name + "/" + kImage},
+          {"width", camera.width()},
+          {"height", camera.height()},
+          {"scene", entry.name}};
+}
+
+Json annotation_json(const SceneEntry& entry, std::size_t k, const Mask& visible, const Mask& whole) {
+  const std::size_t seen = pixels_of(visible), all = pixels_of(whole);
+  return {{"id", entry.first_object + static_cast<int>(k)},
+          {"image_id", entry.number},
+          {"category_id", kTubeCategory},
+          {"iscrowd", 0},
+          {"area", seen},
+          {"bbox", box_json(visible)},
+          {"segmentation", run_lengths(visible)},
+          {"label", k + 1},
+          {"amodal_bbox", box_json(whole)},
+          {"amodal_area", all},
+          {"amodal_segmentation", run_lengths(whole)}};
+}
+
+class CocoFormat : public ExportFormat {
+ public:
+  std::string scene_path(const SceneEntry& entry) const override { return entry.name; }
+
+  SceneFiles export_scene(const SceneToExport& scene) const override {
+    const SceneImage image(scene);
+    const auto views = view_tubes_alone(scene.record.scene);
+    Json annotations = Json::array();
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      const Mask visible = image.visible_mask(static_cast<Label>(k + 1));
+      if (pixels_of(visible) == 0) continue;  // COCO has no instances that nothing shows
+      annotations.push_back(annotation_json(scene.entry, k, visible, mask_of(views[k], image.camera())));
+    }
+    SceneFiles files;
+    files.scene[kImage] = png_of_rgb(image.shaded_rgb(), image.camera().width(), image.camera().height());
+    files.scene[kAnnotations] = document({image_json(scene.entry, image.camera())}, annotations);
+    return files;
+  }
+
+  Files summarize(const std::vector<SceneEntry>& entries, const std::string& output) const override {
+    Json images = Json::array(), annotations = Json::array();
+    for (const SceneEntry& entry : entries) {
+      const Json scene = Json::parse(read_file(output + "/" + scene_path(entry) + "/" + kAnnotations));
+      images.insert(images.end(), scene.at("images").begin(), scene.at("images").end());
+      annotations.insert(annotations.end(), scene.at("annotations").begin(), scene.at("annotations").end());
+    }
+    return {{kAnnotations, document(images, annotations)}};
+  }
+
+ private:
+  static std::string document(const Json& images, const Json& annotations) {
+    return Json{{"info", {{"description", "Entangled tubes in a bin, by tubebin"}, {"version", TUBEBIN_VERSION}}},
+                {"licenses", Json::array()},
+                {"categories", {{{"id", kTubeCategory}, {"name", "tube"}, {"supercategory", "object"}}}},
+                {"images", images},
+                {"annotations", annotations}}
+               .dump() +
+           "\n";
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<ExportFormat> coco_format() { return std::make_unique<CocoFormat>(); }
+
+}  // namespace tubebin

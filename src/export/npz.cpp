@@ -1,0 +1,130 @@
+#include <fmt/ranges.h>
+
+#include <type_traits>
+
+#include "export/scene_image.hpp"
+#include "export/zip.hpp"
+#include "tubebin/export/formats.hpp"
+
+namespace tubebin {
+namespace {
+
+template <typename Value>
+constexpr const char* kNumpyType = nullptr;
+template <>
+constexpr const char* kNumpyType<float> = "<f4";
+template <>
+constexpr const char* kNumpyType<double> = "<f8";
+template <>
+constexpr const char* kNumpyType<std::int32_t> = "<i4";
+template <>
+constexpr const char* kNumpyType<std::int64_t> = "<i8";
+template <>
+constexpr const char* kNumpyType<std::uint8_t> = "|u1";
+
+/// A .npy file, version 1.0: magic, the header's length, a Python dictionary padded to 64 bytes, the values.
+template <typename Value>
+std::string npy(const std::vector<Value>& values, const std::vector<std::size_t>& shape) {
+  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({},), }}", kNumpyType<Value>,
+                                   fmt::join(shape, ", "));
+  constexpr std::size_t kPrefix = 10, kAlignment = 64;
+  header.append(kAlignment - 1 - (kPrefix + header.size()) % kAlignment, ' ');
+  header += '\n';
+  std::string bytes("\x93NUMPY\x01\x00", 8);
+  bytes += static_cast<char>(header.size() & 0xFF);
+  bytes += static_cast<char>(header.size() >> 8);
+  bytes += header;
+  return bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
+}
+
+template <typename Matrix>
+void append_rows(std::vector<double>& values, const Matrix& matrix) {
+  for (int row = 0; row < matrix.rows(); ++row)
+    for (int column = 0; column < matrix.cols(); ++column) values.push_back(matrix(row, column));
+}
+
+std::vector<std::size_t> image_shape(const Cloud& cloud) {
+  return cloud.organized() ? std::vector<std::size_t>{cloud.height, cloud.width}
+                           : std::vector<std::size_t>{cloud.size()};
+}
+
+std::vector<std::size_t> operator+(std::vector<std::size_t> shape, std::size_t size) {
+  shape.push_back(size);
+  return shape;
+}
+
+void add_cloud(const Cloud& cloud, Files& arrays) {
+  std::vector<float> points;
+  std::vector<std::int32_t> labels;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    points.insert(points.end(), cloud.points[i].data(), cloud.points[i].data() + 3);
+    labels.push_back(is_finite(cloud.points[i]) ? static_cast<std::int32_t>(cloud.labels[i]) : -1);
+  }
+  arrays["points.npy"] = npy(points, image_shape(cloud) + 3);
+  arrays["labels.npy"] = npy(labels, image_shape(cloud));
+}
+
+void add_scanner(const SceneRecord& record, Files& arrays) {
+  const Camera camera(record.scene.scanner);
+  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
+  k(0, 0) = k(1, 1) = camera.focal_length();
+  k(0, 2) = camera.width() / 2.0;
+  k(1, 2) = camera.height() / 2.0;
+  std::vector<double> intrinsics, pose;
+  append_rows(intrinsics, k);
+  append_rows(pose, camera.world_from_scanner().matrix());
+  const PixelWindow& window = record.window;
+  arrays["intrinsics.npy"] = npy(intrinsics, {3, 3});
+  arrays["world_from_scanner.npy"] = npy(pose, {4, 4});
+  arrays["window.npy"] = npy(std::vector<std::int64_t>{window.x, window.y, window.width, window.height}, {4});
+  arrays["image_size.npy"] = npy(std::vector<std::int64_t>{camera.width(), camera.height()}, {2});
+}
+
+/// Tubes have different numbers of nodes: all nodes stand in one array, and another says whose they are.
+void add_tubes(const SceneToExport& scene, Files& arrays) {
+  std::vector<double> poses, radii, nodes;
+  std::vector<std::int64_t> tube_of_node, cylinders, visible, amodal;
+  std::int64_t first_node = 0;
+  const auto views = view_tubes_alone(scene.record.scene);
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const PlacedTube& placed = scene.record.scene.tubes[k];
+    append_rows(poses, placed.world_from_tube.matrix());
+    radii.push_back(placed.tube.radius);
+    for (int node = 0; node < static_cast<int>(placed.tube.nodes.size()); ++node) {
+      append_rows(nodes, placed.node_in_world(node));
+      tube_of_node.push_back(static_cast<std::int64_t>(k + 1));
+    }
+    for (const Cylinder& cylinder : placed.tube.cylinders)
+      cylinders.insert(cylinders.end(), {first_node + cylinder.node_a, first_node + cylinder.node_b});
+    first_node += static_cast<std::int64_t>(placed.tube.nodes.size());
+    visible.push_back(static_cast<std::int64_t>(scene.record.tube_pixels[k]));
+    amodal.push_back(static_cast<std::int64_t>(views[k].size()));
+  }
+  arrays["world_from_tube.npy"] = npy(poses, {radii.size(), 4, 4});
+  arrays["radius.npy"] = npy(radii, {radii.size()});
+  arrays["nodes.npy"] = npy(nodes, {tube_of_node.size(), 3});
+  arrays["tube_of_node.npy"] = npy(tube_of_node, {tube_of_node.size()});
+  arrays["cylinders.npy"] = npy(cylinders, {cylinders.size() / 2, 2});
+  arrays["visible_pixels.npy"] = npy(visible, {visible.size()});
+  arrays["amodal_pixels.npy"] = npy(amodal, {amodal.size()});
+}
+
+class NpzFormat : public ExportFormat {
+ public:
+  std::string scene_path(const SceneEntry& entry) const override { return entry.name + ".npz"; }
+
+  SceneFiles export_scene(const SceneToExport& scene) const override {
+    const SceneImage checked(scene);
+    Files arrays;
+    add_cloud(scene.cloud, arrays);
+    add_scanner(scene.record, arrays);
+    add_tubes(scene, arrays);
+    return {.beside = {}, .scene = {{"", format_zip(arrays)}}};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<ExportFormat> npz_format() { return std::make_unique<NpzFormat>(); }
+
+}  // namespace tubebin

@@ -1,0 +1,121 @@
+#include "export/scene_image.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "export/surface_normal.hpp"
+#include "tubebin/core/error.hpp"
+
+namespace tubebin {
+namespace {
+
+struct Pixel {
+  int column = 0;
+  int row = 0;
+};
+
+Pixel pixel_of_organized(std::size_t index, const PixelWindow& window) {
+  const auto width = static_cast<std::size_t>(window.width);
+  return {window.x + static_cast<int>(index % width), window.y + static_cast<int>(index / width)};
+}
+
+Pixel pixel_on_ray(const Point& point, const Camera& camera) {
+  const Eigen::Vector2d place = camera.project_from_world(point.cast<double>());
+  return {static_cast<int>(std::floor(place.x())), static_cast<int>(std::floor(place.y()))};
+}
+
+void check_consistent(const SceneToExport& scene) {
+  const Cloud& cloud = scene.cloud;
+  const PixelWindow& window = scene.record.window;
+  if (cloud.labels.size() != cloud.size()) throw_io_error("{}: the cloud has no labels", scene.entry.name);
+  if (cloud.organized() && (cloud.width != static_cast<std::uint32_t>(window.width) ||
+                            cloud.height != static_cast<std::uint32_t>(window.height)))
+    throw_io_error("{}: the cloud has {} x {} points, the window of scene.json {} x {}", scene.entry.name, cloud.width,
+                   cloud.height, window.width, window.height);
+  const auto highest = std::ranges::max_element(cloud.labels);
+  if (highest != cloud.labels.end() && *highest > scene.record.scene.tubes.size())
+    throw_io_error("{}: the cloud has label {}, scene.json {} tubes", scene.entry.name, *highest,
+                   scene.record.scene.tubes.size());
+}
+
+}  // namespace
+
+SceneImage::SceneImage(const SceneToExport& scene)
+    : scene_(scene), camera_(scene.record.scene.scanner), points_(camera_.width(), camera_.height(), -1) {
+  check_consistent(scene);
+  const Cloud& cloud = scene.cloud;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_finite(cloud.points[i])) continue;
+    const Pixel pixel =
+        cloud.organized() ? pixel_of_organized(i, scene.record.window) : pixel_on_ray(cloud.points[i], camera_);
+    if (pixel.column >= 0 && pixel.column < points_.width && pixel.row >= 0 && pixel.row < points_.height)
+      points_.at(pixel.column, pixel.row) = static_cast<int>(i);
+  }
+}
+
+Raster<float> SceneImage::depths() const {
+  Raster<float> depths(points_.width, points_.height, 0.0F);
+  const Pose scanner_from_world = camera_.world_from_scanner().inverse();
+  for (std::size_t i = 0; i < points_.values.size(); ++i)
+    if (const int point = points_.values[i]; point >= 0)
+      depths.values[i] = static_cast<float>(
+          (scanner_from_world * scene_.cloud.points[static_cast<std::size_t>(point)].cast<double>()).z());
+  return depths;
+}
+
+Raster<int> SceneImage::labels() const {
+  Raster<int> labels(points_.width, points_.height, -1);
+  for (std::size_t i = 0; i < points_.values.size(); ++i)
+    if (const int point = points_.values[i]; point >= 0)
+      labels.values[i] = static_cast<int>(scene_.cloud.labels[static_cast<std::size_t>(point)]);
+  return labels;
+}
+
+Mask SceneImage::visible_mask(Label label) const {
+  Mask mask(points_.width, points_.height, 0);
+  for (std::size_t i = 0; i < points_.values.size(); ++i)
+    if (const int point = points_.values[i]; point >= 0)
+      mask.values[i] = scene_.cloud.labels[static_cast<std::size_t>(point)] == label ? 255 : 0;
+  return mask;
+}
+
+// Lambert's cosine with some ambient light; the lamp is at the scanner, so nothing that it sees is in shadow.
+std::vector<std::uint8_t> SceneImage::shaded_rgb() const {
+  constexpr double kAmbient = 0.25;
+  const Vec3 tube_color(225, 222, 215), bin_color(95, 104, 118);
+  const SurfaceNormals normals(scene_.record.scene);
+  const Vec3 lamp = camera_.world_from_scanner().translation();
+  std::vector<std::uint8_t> rgb(3 * points_.values.size(), 0);
+  for (std::size_t i = 0; i < points_.values.size(); ++i) {
+    if (points_.values[i] < 0) continue;
+    const auto point = static_cast<std::size_t>(points_.values[i]);
+    const Vec3 place = scene_.cloud.points[point].cast<double>();
+    const Label label = scene_.cloud.labels[point];
+    const double cosine = std::max(0.0, normals.at(label, place).dot((lamp - place).normalized()));
+    const Vec3 color = (kAmbient + (1.0 - kAmbient) * cosine) * (label > 0 ? tube_color : bin_color);
+    for (int c = 0; c < 3; ++c)
+      rgb[3 * i + static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(std::lround(color[c]));
+  }
+  return rgb;
+}
+
+Mask mask_of(const std::vector<SeenPixel>& pixels, const Camera& camera) {
+  Mask mask(camera.width(), camera.height(), 0);
+  for (const SeenPixel& pixel : pixels) mask.at(pixel.column, pixel.row) = 255;
+  return mask;
+}
+
+PixelBox box_of(const Mask& mask) {
+  Eigen::AlignedBox2i bounds;
+  for (std::size_t i = 0; i < mask.values.size(); ++i)
+    if (mask.values[i])
+      bounds.extend(Eigen::Vector2i(static_cast<int>(i) % mask.width, static_cast<int>(i) / mask.width));
+  if (bounds.isEmpty()) return {};
+  return {bounds.min().x(), bounds.min().y(), bounds.sizes().x() + 1, bounds.sizes().y() + 1};
+}
+
+std::size_t pixels_of(const Mask& mask) {
+  return static_cast<std::size_t>(std::ranges::count(mask.values, std::uint8_t{255}));
+}
+
+}  // namespace tubebin

@@ -1,0 +1,70 @@
+// A cloud as the scanner's full image: depths, labels, masks, a shaded picture.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tubebin/export/scene_export.hpp"
+#include "tubebin/scan/visibility.hpp"
+#include "tubebin/scene/camera.hpp"
+
+namespace tubebin {
+
+/// Row by row from the top.
+template <typename Value>
+struct Raster {
+  int width = 0;
+  int height = 0;
+  std::vector<Value> values;
+
+  Raster(int columns, int rows, Value value)
+      : width(columns),
+        height(rows),
+        values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), value) {}
+  Value& at(int column, int row) {
+    return values[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
+  }
+};
+
+using Mask = Raster<std::uint8_t>;  ///< 255 inside, 0 outside
+
+/// In which pixel of the full image each point lies.
+class SceneImage {
+ public:
+  /// Points without a pixel of their own (not organized) go to the pixel that their ray passes. Throws IoError where
+  /// the cloud contradicts the record.
+  explicit SceneImage(const SceneToExport& scene);
+
+  const Camera& camera() const { return camera_; }
+  /// Metres along the optical axis; 0 where nothing was seen.
+  Raster<float> depths() const;
+  /// -1 where nothing was seen.
+  Raster<int> labels() const;
+  Mask visible_mask(Label label) const;
+  /// Three bytes a pixel: grey tubes in a darker bin, lit from the scanner, black where nothing was seen.
+  std::vector<std::uint8_t> shaded_rgb() const;
+
+ private:
+  const SceneToExport& scene_;
+  Camera camera_;
+  Raster<int> points_;  // index into the cloud, -1: none
+};
+
+Mask mask_of(const std::vector<SeenPixel>& pixels, const Camera& camera);
+
+/// Smallest box around the mask's pixels: x, y, width, height; -1 -1 -1 -1 where there are none.
+struct PixelBox {
+  int x = -1;
+  int y = -1;
+  int width = -1;
+  int height = -1;
+};
+PixelBox box_of(const Mask& mask);
+std::size_t pixels_of(const Mask& mask);
+
+/// PNG files' bytes: 8 bit grey, 16 bit grey, 8 bit red green blue.
+std::string png_of(const Mask& mask);
+std::string png_of(const Raster<std::uint16_t>& image);
+std::string png_of_rgb(const std::vector<std::uint8_t>& rgb, int width, int height);
+
+}  // namespace tubebin

@@ -1,0 +1,75 @@
+#include "export/surface_normal.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace tubebin {
+namespace {
+
+/// Keeps the normal of the nearest surface that was offered.
+struct Nearest {
+  double distance = std::numeric_limits<double>::infinity();
+  Vec3 normal = Vec3::UnitZ();
+
+  void offer(double signed_distance, const Vec3& candidate) {
+    if (std::abs(signed_distance) >= distance) return;
+    distance = std::abs(signed_distance);
+    normal = candidate;
+  }
+};
+
+}  // namespace
+
+SurfaceNormals::SurfaceNormals(const Scene& scene) : bin_(scene.bin) {
+  for (const PlacedTube& placed : scene.tubes) {
+    TubeParts parts{.radius = placed.tube.radius, .axes = {}, .free_ends = {}, .joints = {}};
+    const std::vector<int> degrees = placed.tube.node_degrees();
+    const auto is_free = [&](int node) { return degrees[static_cast<std::size_t>(node)] == 1; };
+    for (const Cylinder& cylinder : placed.tube.cylinders) {
+      const Vec3 a = placed.node_in_world(cylinder.node_a), b = placed.node_in_world(cylinder.node_b);
+      const Vec3 axis = (b - a).normalized();
+      parts.axes.emplace_back(a, b);
+      if (is_free(cylinder.node_a)) parts.free_ends.emplace_back(a, -axis);
+      if (is_free(cylinder.node_b)) parts.free_ends.emplace_back(b, axis);
+    }
+    for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
+      if (!is_free(node)) parts.joints.push_back(placed.node_in_world(node));
+    tubes_.push_back(std::move(parts));
+  }
+}
+
+Vec3 SurfaceNormals::at(Label label, const Vec3& point) const {
+  return label == 0 ? at_bin(point) : at_tube(tubes_.at(label - 1), point);
+}
+
+Vec3 SurfaceNormals::at_tube(const TubeParts& tube, const Vec3& point) const {
+  Nearest nearest;
+  for (const auto& [a, b] : tube.axes) {
+    const double along = (point - a).dot(b - a) / (b - a).squaredNorm();
+    if (along < 0.0 || along > 1.0) continue;
+    const Vec3 across = point - (a + along * (b - a));
+    nearest.offer(across.norm() - tube.radius, across.normalized());
+  }
+  for (const Vec3& center : tube.joints)
+    nearest.offer((point - center).norm() - tube.radius, (point - center).normalized());
+  for (const auto& [center, normal] : tube.free_ends)
+    if ((point - center).norm() <= tube.radius) nearest.offer((point - center).dot(normal), normal);
+  return nearest.normal;
+}
+
+Vec3 SurfaceNormals::at_bin(const Vec3& point) const {
+  const double half_length = bin_.length / 2.0, half_width = bin_.width / 2.0;
+  const double outside = std::max(std::abs(point.x()) - half_length, std::abs(point.y()) - half_width);
+  Nearest nearest;
+  if (outside <= 0.0) nearest.offer(point.z(), Vec3::UnitZ());
+  else nearest.offer(point.z() - bin_.height, Vec3::UnitZ());
+  for (const double side : {-1.0, 1.0}) {
+    nearest.offer(point.x() - side * half_length, Vec3(-side, 0, 0));
+    nearest.offer(point.y() - side * half_width, Vec3(0, -side, 0));
+    nearest.offer(point.x() - side * (half_length + bin_.wall_thickness), Vec3(side, 0, 0));
+    nearest.offer(point.y() - side * (half_width + bin_.wall_thickness), Vec3(0, side, 0));
+  }
+  return nearest.normal;
+}
+
+}  // namespace tubebin
