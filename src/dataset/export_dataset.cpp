@@ -112,17 +112,21 @@ std::vector<Source> continue_index(const std::string& path, const std::vector<In
   return ordered;
 }
 
-/// Locked, with an index that says what it is made from.
+/// A folder with other things in it was hardly meant.
+void refuse_if_foreign(const std::string& output) {
+  if (!fs::exists(output) || fs::exists(output + "/index.json")) return;
+  for (const fs::directory_entry& entry : fs::directory_iterator(output))
+    if (const std::string name = entry.path().filename(); !name.starts_with('.') && !name.starts_with("index.json."))
+      throw_config_error("{}: holds files, but no export (index.json is missing); choose a new or empty folder",
+                         output);
+}
+
+/// Writes the index that says what the output is made from, and returns the scenes in its order.
 std::vector<Source> settle_index(const ExportOptions& options) {
   const std::string path = options.output + "/index.json";
   std::vector<Source> sources = list_sources(options.dataset);
   if (fs::exists(path)) {
     sources = continue_index(path, read_index(path, options.format), std::move(sources));
-  } else {
-    for (const fs::directory_entry& entry : fs::directory_iterator(options.output))
-      if (const std::string name = entry.path().filename(); !name.starts_with('.') && !name.starts_with("index.json."))
-        throw_config_error("{}: holds files, but no export (index.json is missing); choose a new or empty folder",
-                           options.output);
   }
   write_file_atomically(path, format_index(sources, options.format));
   return sources;
@@ -190,6 +194,7 @@ ExportReport export_dataset(const ExportOptions& options, Progress::Style progre
   const auto known = formats().find(options.format);
   if (known == formats().end())
     throw_config_error("--format {}: unknown; one of {}", options.format, fmt::join(export_format_names(), ", "));
+  refuse_if_foreign(options.output);
   if (!fs::exists(options.output)) list_sources(options.dataset);  // leaves no folder where there is nothing to export
   fs::create_directories(options.output);
   const FolderLock lock(options.output);

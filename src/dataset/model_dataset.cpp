@@ -16,6 +16,7 @@
 #include "tubebin/dataset/folder_lock.hpp"
 #include "tubebin/dataset/whole_folder.hpp"
 #include "tubebin/dataset/worker_pool.hpp"
+#include "tubebin/evaluation/run_score.hpp"
 #include "tubebin/modeling/model_json.hpp"
 
 namespace tubebin {
@@ -103,8 +104,8 @@ void add_contingency(Json& json, const CloudToModel& input, const ModelingResult
 }
 
 std::string format_result(const Run& run, const CloudToModel& input, const ModelingResult& result, std::uint64_t seed) {
-  const SceneName name = parse_scene_name(run.scene);
-  const std::size_t tubes = input.scene ? input.scene->scene.tubes.size() : name.tubes;
+  const RunKey name = parse_scene_name(run.scene);
+  const std::size_t tubes = input.scene ? input.scene->scene.tubes.size() : static_cast<std::size_t>(name.tubes);
   const auto unlabeled = std::count(result.labels.begin(), result.labels.end(), Label{0});
   Json json = {{"format", "tubebin result 1"},
                {"scene", run.scene},

@@ -76,7 +76,7 @@ class CocoFormat : public ExportFormat {
     }
     SceneFiles files;
     files.scene[kImage] = png_of_rgb(image.shaded_rgb(), image.camera().width(), image.camera().height());
-    files.scene[kAnnotations] = document({image_json(scene.entry, image.camera())}, annotations);
+    files.scene[kAnnotations] = document(Json::array({image_json(scene.entry, image.camera())}), annotations);
     return files;
   }
 

@@ -1,0 +1,285 @@
+#!/usr/bin/env python3
+"""Compare an export with the data set that it was made from, with nothing of this project's own code.
+
+usage: check_export.py FORMAT DATASET EXPORT [PUBLISHED_WORLD...]
+exit code: 0 they agree, 1 they don't (the first difference is named), 77 a package that the check needs is missing
+"""
+import json
+import sys
+import xml.etree.ElementTree as ElementTree
+
+try:
+    import numpy as np
+except ImportError as error:
+    print(error)
+    sys.exit(77)
+
+
+def need(name):
+    """The module, or the end of the program where it is missing."""
+    try:
+        return __import__(name, fromlist=["_"])
+    except ImportError as error:
+        print(error)
+        sys.exit(77)
+
+
+class Scene:
+    def __init__(self, folder):
+        self.truth = json.load(open(f"{folder}/scene.json"))
+        data = open(f"{folder}/cloud.pcd", "rb").read()
+        body = data.split(b"DATA binary\n", 1)[1]
+        points = np.frombuffer(body, [("xyz", "<f4", 3), ("rgb", "<u4"), ("label", "<u4")])
+        window = self.truth["scanner"]["window"]
+        self.window = [window[key] for key in ("x", "y", "width", "height")]
+        self.shape = (window["height"], window["width"])
+        self.xyz = points["xyz"].reshape(*self.shape, 3)
+        self.rgb = points["rgb"].reshape(self.shape)
+        self.label = points["label"].reshape(self.shape)
+        self.seen = np.isfinite(self.xyz[..., 0])
+        self.folder = folder
+
+    def in_image(self, values, nothing=0):
+        """A window's values in the full image."""
+        x, y, width, height = self.window
+        image = np.full((self.truth["scanner"]["height"], self.truth["scanner"]["width"]), nothing, values.dtype)
+        image[y:y + height, x:x + width] = values
+        return image
+
+    def tube_image(self, k):
+        return self.in_image(self.seen & (self.label == k)).astype(bool)
+
+
+def scenes_of(dataset, export):
+    for number, line in enumerate(json.load(open(f"{export}/index.json"))["scenes"], 1):
+        yield number, line["scene"], Scene(f"{dataset}/{line['scene']}")
+
+
+def box_of(mask):
+    rows, columns = np.nonzero(mask)
+    return [columns.min(), rows.min(), np.ptp(columns) + 1, np.ptp(rows) + 1] if rows.size else [-1] * 4
+
+
+def check_bop(dataset, export):
+    """Through the loaders of bop_toolkit."""
+    inout = need("bop_toolkit_lib.inout")
+    objects = 0
+    models_info = inout.load_json(f"{export}/models/models_info.json", keys_to_int=True)
+    targets = inout.load_json(f"{export}/test_targets_bop19.json")
+    visible_enough = []
+    for number, name, scene in scenes_of(dataset, export):
+        folder = f"{export}/test/{number:06d}"
+        camera = inout.load_scene_camera(f"{folder}/scene_camera.json")[0]
+        depth = inout.load_depth(f"{folder}/depth/000000.png") * camera["depth_scale"]
+        assert inout.load_im(f"{folder}/rgb/000000.png").shape == (*depth.shape, 3)
+        assert np.array_equal(depth > 0, scene.in_image(scene.seen)), name
+        rows, columns = np.nonzero(depth)
+        in_camera = 1000 * scene.xyz[scene.seen].astype(float) @ camera["cam_R_w2c"].T + camera["cam_t_w2c"].T
+        image = in_camera @ camera["cam_K"].T
+        assert np.abs(image[:, :2] / image[:, 2:] - np.stack([columns, rows], 1)).max() < 1e-3, name
+        assert np.abs(in_camera[:, 2] - depth[rows, columns]).max() <= 0.501 * camera["depth_scale"], name
+        poses = inout.load_scene_gt(f"{folder}/scene_gt.json")[0]
+        infos = inout.load_json(f"{folder}/scene_gt_info.json", keys_to_int=True)[0]
+        assert len(poses) == len(infos) == len(scene.truth["tubes"])
+        for k, (pose, info, tube) in enumerate(zip(poses, infos, scene.truth["tubes"])):
+            objects += 1
+            where = f"{name}, tube {k + 1}"
+            assert pose["obj_id"] == objects, where
+            whole = inout.load_im(f"{folder}/mask/000000_{k:06d}.png") > 0
+            visible = inout.load_im(f"{folder}/mask_visib/000000_{k:06d}.png") > 0
+            assert np.array_equal(visible, scene.tube_image(k + 1)), where
+            assert not (visible & ~whole).any(), where
+            assert info["px_count_all"] == whole.sum() == tube["amodal_pixels"], where
+            assert info["px_count_visib"] == visible.sum() == tube["visible_pixels"], where
+            assert info["px_count_valid"] == (whole & (depth > 0)).sum(), where
+            assert abs(info["visib_fract"] - tube["visible_fraction"]) < 1e-12, where
+            assert info["bbox_obj"] == box_of(whole) and info["bbox_visib"] == box_of(visible), where
+            if info["visib_fract"] >= 0.1:
+                visible_enough.append({"im_id": 0, "inst_count": 1, "obj_id": objects, "scene_id": number})
+            model = inout.load_ply(f"{export}/models/obj_{objects:06d}.ply")
+            check_model(model, models_info[objects], pose, camera["cam_K"], whole, where)
+    assert len(models_info) == objects
+    assert targets == visible_enough
+    sensor = inout.load_cam_params(f"{export}/camera.json")
+    assert sensor["im_size"] == depth.shape[::-1] and np.allclose(sensor["K"], camera["cam_K"])
+
+
+def check_model(model, info, pose, K, whole, where):
+    points = model["pts"]
+    assert np.allclose(points.min(0), [info[f"min_{axis}"] for axis in "xyz"], atol=1e-3), where
+    assert np.allclose(np.ptp(points, 0), [info[f"size_{axis}"] for axis in "xyz"], atol=1e-3), where
+    diameter = max(np.sqrt(((points - point) ** 2).sum(1).max()) for point in points)
+    assert abs(diameter - info["diameter"]) < 1e-2, where
+    assert np.allclose(np.linalg.norm(model["normals"], axis=1), 1, atol=1e-5), where
+    image = (points @ pose["cam_R_m2c"].T + pose["cam_t_m2c"].T) @ K.T
+    pixels = image[:, :2] / image[:, 2:]
+    x, y, width, height = box_of(whole)
+    is_cut = x == 0 or y == 0 or x + width == whole.shape[1] or y + height == whole.shape[0]
+    if not is_cut:  # the mesh reaches all around the silhouette's pixels, and beyond them by tips thinner than a pixel
+        beyond = np.concatenate([[x, y] - pixels.min(0), pixels.max(0) - [x + width - 1, y + height - 1]])
+        assert beyond.min() > -0.05 and beyond.max() < 2.0, (where, beyond)
+
+
+def check_coco(dataset, export):
+    """Through pycocotools."""
+    coco = need("pycocotools.coco").COCO(f"{export}/annotations.json")
+    assert [category["name"] for category in coco.loadCats(coco.getCatIds())] == ["tube"]
+    for number, name, scene in scenes_of(dataset, export):
+        image = coco.loadImgs([number])[0]
+        assert image["scene"] == name and open(f"{export}/{image['file_name']}", "rb").read(4) == b"\x89PNG"
+        annotations = coco.loadAnns(coco.getAnnIds(imgIds=[number]))
+        visible = [tube["label"] for tube in scene.truth["tubes"] if tube["visible_pixels"] > 0]
+        assert [annotation["label"] for annotation in annotations] == visible, name
+        for annotation in annotations:
+            where = f"{name}, tube {annotation['label']}"
+            tube = scene.truth["tubes"][annotation["label"] - 1]
+            mask = coco.annToMask(annotation) == 1
+            whole = coco.annToMask({**annotation, "segmentation": annotation["amodal_segmentation"]}) == 1
+            assert np.array_equal(mask, scene.tube_image(annotation["label"])), where
+            assert annotation["area"] == mask.sum() == tube["visible_pixels"], where
+            assert annotation["amodal_area"] == whole.sum() == tube["amodal_pixels"], where
+            assert annotation["bbox"] == box_of(mask) and annotation["amodal_bbox"] == box_of(whole), where
+            assert not (mask & ~whole).any(), where
+    ids = coco.getAnnIds()
+    assert len(set(ids)) == len(ids) == len(coco.dataset["annotations"])
+
+
+def check_npz(dataset, export):
+    for _, name, scene in scenes_of(dataset, export):
+        arrays = np.load(f"{export}/{name}.npz")
+        assert arrays.zip.testzip() is None
+        truth, tubes = scene.truth, scene.truth["tubes"]
+        assert np.array_equal(arrays["points"], scene.xyz, equal_nan=True), name
+        assert np.array_equal(arrays["labels"], np.where(scene.seen, scene.label.astype(int), -1)), name
+        assert arrays["window"].tolist() == scene.window
+        assert arrays["image_size"].tolist() == [truth["scanner"]["width"], truth["scanner"]["height"]]
+        pose = np.array(truth["scanner"]["pose"]["rotation"])
+        assert np.array_equal(arrays["world_from_scanner"][:3, :3], pose)
+        in_scanner = (scene.xyz[scene.seen] - arrays["world_from_scanner"][:3, 3]) @ arrays["world_from_scanner"][:3, :3]
+        image = in_scanner @ arrays["intrinsics"].T
+        rows, columns = np.nonzero(scene.seen)
+        expected = np.stack([columns + scene.window[0] + 0.5, rows + scene.window[1] + 0.5], 1)
+        assert np.abs(image[:, :2] / image[:, 2:] - expected).max() < 1e-3, name
+        nodes = [node for tube in tubes for node in tube["nodes_in_world"]]
+        assert np.allclose(arrays["nodes"], np.reshape(nodes, (-1, 3)), atol=1e-12)
+        assert arrays["tube_of_node"].tolist() == [t["label"] for t in tubes for _ in t["nodes"]]
+        lengths = np.linalg.norm(arrays["nodes"][arrays["cylinders"][:, 0]] - arrays["nodes"][arrays["cylinders"][:, 1]], axis=1)
+        assert abs(lengths.sum() - sum(tube["length"] for tube in tubes)) < 1e-9
+        for k, tube in enumerate(tubes):
+            assert np.array_equal(arrays["world_from_tube"][k, :3, :3], tube["pose"]["rotation"])
+            assert np.array_equal(arrays["world_from_tube"][k, :3, 3], tube["pose"]["position"])
+            assert arrays["radius"][k] == tube["radius"]
+            assert arrays["visible_pixels"][k] == tube["visible_pixels"]
+            assert arrays["amodal_pixels"][k] == tube["amodal_pixels"]
+
+
+def published_name(name, folder, extension):
+    group, case = name.rsplit("/", 1)
+    return f"{group}/{folder}/{int(case)}{extension}"
+
+
+def check_ply(dataset, export):
+    for _, name, scene in scenes_of(dataset, export):
+        data = open(f"{export}/{published_name(name, 'plys', '.ply')}", "rb").read()
+        header, body = data.split(b"end_header\n", 1)
+        assert b"format binary_little_endian 1.0" in header
+        count = int(header.split(b"element vertex ")[1].split()[0])
+        points = np.frombuffer(body, [("xyz", "<f4", 3), ("rgb", "u1", 3), ("label", "<u4")], count)
+        of_tubes = scene.seen & (scene.label > 0)
+        assert np.array_equal(points["xyz"], scene.xyz[of_tubes]), name
+        assert np.array_equal(points["label"], scene.label[of_tubes]), name
+        rgb = points["rgb"].astype(int) @ [65536, 256, 1]
+        assert np.array_equal(rgb, scene.rgb[of_tubes] & 0xFFFFFF), name
+        text = open(f"{export}/{published_name(name, 'tube_configurations', '.txt')}").read()
+        assert text == open(f"{scene.folder}/tubes.txt").read(), name
+
+
+# Where elements stand in the published .world files; of what they have, these are what a settled scene needs.
+PART = ["collision/pose", "collision/geometry", "collision/max_contacts"] + [
+    "collision/surface/" + leaf for leaf in
+    ["friction/ode/mu", "friction/ode/mu2", "contact/ode/kp", "contact/ode/kd", "contact/ode/max_vel",
+     "contact/ode/min_depth"]]
+WORLD = ["gravity", "magnetic_field", "atmosphere", "scene/ambient", "scene/background", "scene/shadows",
+         "physics/max_step_size", "physics/real_time_factor", "physics/real_time_update_rate", "physics/max_contacts",
+         "physics/ode/solver/type", "physics/ode/solver/iters", "physics/ode/solver/sor",
+         "physics/ode/solver/use_dynamic_moi_rescaling", "physics/ode/constraints/contact_max_correcting_vel",
+         "physics/ode/constraints/contact_surface_layer", "physics/ode/constraints/cfm", "physics/ode/constraints/erp"]
+CAMERA = ["horizontal_fov", "image/width", "image/height", "image/format", "clip/near", "clip/far", "depth_camera/output"]
+TUBE = ["static", "pose", "link/inertial/pose", "link/inertial/mass", "link/visual/pose", "link/visual/geometry",
+        "link/visual/material/ambient", "link/collision/geometry/cylinder/radius",
+        "link/collision/geometry/cylinder/length"] + [
+            "link/inertial/inertia/" + key for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")] + [
+                "link/" + leaf for leaf in PART]
+BIN = ["static", "link/collision/geometry/box/size"] + ["link/" + leaf for leaf in PART]
+# What the published files lack: a lamp, and a diffuse colour and looks of the bin to see by.
+ADDED = {"light", "light/pose", "light/diffuse", "light/direction", "model/link/visual/geometry/box",
+         "model/link/visual/geometry/box/size", "model/link/visual/material/diffuse"}
+
+
+def element_paths(element, prefix=""):
+    for child in element:
+        path = prefix + child.tag
+        yield path
+        yield from element_paths(child, path + "/")
+
+
+def rotation(roll, pitch, yaw):
+    about = [(1, 2, roll), (2, 0, pitch), (0, 1, yaw)]
+    whole = np.eye(3)
+    for i, j, angle in about:
+        turn = np.eye(3)
+        turn[i, i] = turn[j, j] = np.cos(angle)
+        turn[i, j], turn[j, i] = -np.sin(angle), np.sin(angle)
+        whole = turn @ whole
+    return whole
+
+
+def pose_of(element):
+    values = [float(value) for value in element.findtext("pose").split()]
+    return rotation(*values[3:]), np.array(values[:3])
+
+
+def check_sdf(dataset, export, *published_worlds):
+    published = [set(element_paths(ElementTree.parse(path).find("world"))) for path in published_worlds]
+    for _, name, scene in scenes_of(dataset, export):
+        root = ElementTree.parse(f"{export}/{published_name(name, 'gazebo_worlds', '.world')}").getroot()
+        assert root.tag == "sdf" and root.get("version") == "1.7" and root.find("world").get("name") == "default"
+        world = root.find("world")
+        for paths in published:
+            assert set(element_paths(world)) <= paths | ADDED, sorted(set(element_paths(world)) - paths - ADDED)
+        assert not [path for path in WORLD if world.find(path) is None]
+        models = {model.get("name"): model for model in world.findall("model")}
+        assert set(models) == {"scanner", "bin"} | {str(tube["label"]) for tube in scene.truth["tubes"]}
+        camera = models["scanner"].find("link/sensor[@type='depth']/camera")
+        assert not [path for path in CAMERA if camera.find(path) is None]
+        turn, place = pose_of(models["scanner"])
+        assert np.allclose(place, scene.truth["scanner"]["position"])
+        optical = np.array(scene.truth["scanner"]["pose"]["rotation"])
+        assert np.allclose(turn[:, 0], optical[:, 2]) and np.allclose(turn[:, 2], -optical[:, 1])
+        assert not [path for path in BIN if models["bin"].find(path) is None]
+        for tube in scene.truth["tubes"]:
+            check_sdf_tube(models[str(tube["label"])], tube, f"{name}, tube {tube['label']}")
+
+
+def check_sdf_tube(model, tube, where):
+    assert not [path for path in TUBE if model.find(path) is None], where
+    turn, place = pose_of(model)
+    nodes = np.array(tube["nodes_in_world"])
+    cylinders = [part for part in model.findall("link/collision") if part.find("geometry/cylinder") is not None]
+    spheres = [part for part in model.findall("link/collision") if part.find("geometry/sphere") is not None]
+    assert len(cylinders) == len(tube["cylinders"]), where
+    for part, cylinder in zip(cylinders, tube["cylinders"]):
+        part_turn, part_place = pose_of(part)
+        half = part_turn @ [0, 0, float(part.findtext("geometry/cylinder/length")) / 2]
+        ends = np.array([part_place - half, part_place + half]) @ turn.T + place
+        assert np.allclose(ends, nodes[[cylinder["node_a"], cylinder["node_b"]]], atol=1e-7), where
+    shared = [node for i, node in enumerate(nodes)
+              if sum(i in (c["node_a"], c["node_b"]) for c in tube["cylinders"]) != 1]
+    centers = np.array([pose_of(part)[1] for part in spheres]).reshape(-1, 3) @ turn.T + place
+    assert np.allclose(centers, np.reshape(shared, (-1, 3)), atol=1e-7), where
+    assert abs(float(model.findtext("link/inertial/mass")) - tube["mass"]) < 1e-6, where
+
+
+if __name__ == "__main__":
+    checks = {"bop": check_bop, "coco": check_coco, "npz": check_npz, "ply": check_ply, "sdf": check_sdf}
+    checks[sys.argv[1]](*sys.argv[2:])
