@@ -51,7 +51,7 @@ class UnfinishedFolder {
   std::string file(const std::string& name) {
     const fs::path file = path_ / name;
     for (fs::path folder = file.parent_path(); folder != path_; folder = folder.parent_path()) inner_.insert(folder);
-    fs::create_directories(file.parent_path());
+    if (file.parent_path() != path_) fs::create_directories(file.parent_path());
     return file.string();
   }
 
