@@ -143,7 +143,10 @@ class Pool {
   void start_attempt(Worker& worker) {
     worker.attempt_start = clock_.now();
     const Attempt attempt{.job = worker.job->job, .number = static_cast<int>(worker.job->failed.size())};
-    while (!worker.process || !worker.process->start(attempt)) start_process(worker);
+    while (!worker.process || !worker.process->start(attempt)) {
+      make_again(worker.finishing);  // a process that was killed while it finished a job takes that with it
+      start_process(worker);
+    }
   }
 
   void start_process(Worker& worker) {
