@@ -29,13 +29,13 @@ void make_scene(const DatasetConfig& config, const SceneStore& store, const Scen
     const double start = now();
     const GeneratedScene scene = generate_scene(config, id, attempt);
     const double generated = now();
-    if (scene.failure == DropFailure::none) {
+    if (scene.failure.empty()) {
       store.begin_write(id.name(), scene.content)();
       costs.seconds["write"] += now() - generated;
       for (const auto& [stage, seconds] : scene.seconds) costs.seconds[stage] += seconds;
     }
     costs.seconds["total"] += now() - start;
-    if (scene.failure == DropFailure::none) return;
+    if (scene.failure.empty()) return;
     ++costs.rejected;
   }
 }

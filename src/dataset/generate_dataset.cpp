@@ -16,7 +16,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// In a worker process: one attempt at a scene, whose folder is complete when `finish` has returned.
 AttemptResult make_scene(const DatasetFolder& folder, const SceneId& id, int attempt) {
   GeneratedScene scene = generate_scene(folder.config(), id, attempt);
-  if (scene.failure != DropFailure::none) return failed_attempt(to_string(scene.failure), scene.failure_detail);
+  if (!scene.failure.empty()) return failed_attempt(scene.failure, scene.failure_detail);
 
   ManifestRecord record{.id = id.name(),
                         .tubes = id.tubes,

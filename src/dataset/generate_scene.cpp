@@ -1,5 +1,6 @@
 #include "tubebin/dataset/generate_scene.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "tubebin/cloud/label_colors.hpp"
@@ -62,13 +63,23 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
   DropResult drop = drop_tubes(tubes, config.bin, config.physics, random.bits());
   clock.end_stage("drop");
   result.physics = drop.figures;
-  result.failure = drop.failure;
-  result.failure_detail = drop.detail;
-  if (drop.failure != DropFailure::none) return result;
+  if (drop.failure != DropFailure::none) {
+    result.failure = to_string(drop.failure);
+    result.failure_detail = drop.detail;
+    return result;
+  }
 
   const Scene scene{.bin = config.bin, .scanner = config.scanner, .tubes = std::move(drop.tubes)};
   Scan scanned = scan(scene);
   clock.end_stage("scan");
+  if (!has_point(scanned.cloud)) {
+    result.failure = "unseen";
+    result.failure_detail = fmt::format(
+        "the cloud has no point: from scanner.position, with scanner.rotation_deg, no surface lies between range_min "
+        "{} m and range_max {} m in the image",
+        config.scanner.range_min, config.scanner.range_max);
+    return result;
+  }
   PileRelations relations = relate_pile(scene);
   clock.end_stage("relate");
 

@@ -25,6 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+constexpr int kRatiosMax = 1000;
+
 const char* name_of(ModelingMethod method) {
   return method == ModelingMethod::centerline ? "centerline" : "region_growing";
 }
@@ -204,6 +206,29 @@ std::vector<Run> list_runs(const BatchOptions& options, const std::vector<CloudF
   return runs;
 }
 
+/// Removes what a killed run left of the runs that it was writing; at the end, too, what an interrupted one leaves.
+class NothingUnfinished {
+ public:
+  NothingUnfinished(std::string results, const std::vector<CloudFile>& clouds)
+      : results_(std::move(results)), clouds_(clouds) {
+    remove();
+  }
+  ~NothingUnfinished() try { remove(); } catch (const std::exception&) {  // the next call tries again
+  }
+  NothingUnfinished(const NothingUnfinished&) = delete;
+  NothingUnfinished& operator=(const NothingUnfinished&) = delete;
+
+ private:
+  void remove() const {
+    for (const CloudFile& cloud : clouds_)
+      if (const std::string folder = results_ + "/" + cloud.scene; fs::is_directory(folder))
+        remove_unfinished_folders(folder);
+  }
+
+  std::string results_;
+  const std::vector<CloudFile>& clouds_;
+};
+
 double parse_ratio(std::string_view text, const std::string& all) {
   double ratio = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ratio);
@@ -222,21 +247,33 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   return parts;
 }
 
-}  // namespace
-
-std::vector<double> parse_ratios(const std::string& text) {
+std::vector<double> parse_ratio_list(const std::string& text) {
   std::vector<double> ratios;
-  if (text.find(':') == std::string::npos) {
-    for (const std::string_view part : split(text, ',')) ratios.push_back(parse_ratio(part, text));
-    return ratios;
-  }
+  for (const std::string_view part : split(text, ',')) ratios.push_back(parse_ratio(part, text));
+  return ratios;
+}
+
+std::vector<double> parse_ratio_range(const std::string& text) {
   const auto parts = split(text, ':');
   if (parts.size() != 3) throw_config_error("--ratios {}: a range is first:last:step, as 0.1:1.0:0.1", text);
   const double first = parse_ratio(parts[0], text), last = parse_ratio(parts[1], text),
                step = parse_ratio(parts[2], text);
+  if (first > last) throw_config_error("--ratios {}: the first is above the last", text);
+  if ((last - first) / step > kRatiosMax) throw_config_error("--ratios {}: makes more than {}", text, kRatiosMax);
   // Decimal steps, not their binary sums: 0.3, not 0.30000000000000004.
+  std::vector<double> ratios;
   for (int k = 0; first + k * step <= last + 1e-9; ++k) ratios.push_back(std::round((first + k * step) * 1e9) / 1e9);
-  if (ratios.empty()) throw_config_error("--ratios {}: the first is above the last", text);
+  return ratios;
+}
+
+}  // namespace
+
+std::vector<double> parse_ratios(const std::string& text) {
+  std::vector<double> ratios = text.find(':') == std::string::npos ? parse_ratio_list(text) : parse_ratio_range(text);
+  std::vector<double> sorted = ratios;
+  std::sort(sorted.begin(), sorted.end());
+  if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
+    throw_config_error("--ratios {}: {} is there twice", text, *twice);
   return ratios;
 }
 
@@ -247,6 +284,7 @@ BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config
   const FolderLock lock(options.results);
   const std::string index = options.results + "/index.json";
   write_file_atomically(index, merge_index(index, format_index(options, config, clouds)));
+  const NothingUnfinished nothing_unfinished(options.results, clouds);
 
   const std::vector<Run> runs = list_runs(options, clouds);
   std::vector<std::size_t> missing;

@@ -57,11 +57,8 @@ bool SceneStore::has(const ManifestRecord& record) const {
 }
 
 void SceneStore::remove_unfinished() const try {
-  for (const fs::directory_entry& set : fs::directory_iterator(folder_)) {
-    if (!set.is_directory()) continue;
-    for (const fs::directory_entry& scene : fs::directory_iterator(set))
-      if (is_unfinished_folder(scene.path().string())) fs::remove_all(scene.path());
-  }
+  for (const fs::directory_entry& set : fs::directory_iterator(folder_))
+    if (set.is_directory()) remove_unfinished_folders(set.path().string());
 } catch (const fs::filesystem_error& error) {
   throw_io_error("{}: cannot be cleared of unfinished scenes: {}", folder_, error.code().message());
 }

@@ -47,14 +47,17 @@ Indexed index_ids(std::span<const SegmentId> ids) {
 
 std::int64_t Contingency::total() const { return std::accumulate(unlabeled.begin(), unlabeled.end(), counts.sum()); }
 
+void require_segments(std::size_t truth_count, std::size_t predicted_count, const std::string& name) {
+  if (truth_count * predicted_count > kMaxPairs)
+    throw_io_error("{}{}{} different ground-truth colours or labels and {} predicted ones: these are no segments", name,
+                   name.empty() ? "" : ": ", truth_count, predicted_count);
+}
+
 Contingency count_pairs(std::span<const SegmentId> truth, std::span<const SegmentId> predicted,
                         std::optional<SegmentId> bin_id) {
   const Indexed rows = index_ids(truth);
   const Indexed columns = index_ids(predicted);
-  if (rows.ids.size() * columns.ids.size() > kMaxPairs)
-    throw_io_error("{} different ground-truth colours or labels and {} predicted ones: these are no segments",
-                   rows.ids.size(), columns.ids.size());
-
+  require_segments(rows.ids.size(), columns.ids.size());
   Counts counts =
       Counts::Zero(static_cast<Eigen::Index>(rows.ids.size()), static_cast<Eigen::Index>(columns.ids.size()));
   for (std::size_t i = 0; i < truth.size(); ++i) ++counts(rows.index_of_point[i], columns.index_of_point[i]);

@@ -216,8 +216,9 @@ std::string legend_svg(const Plot& plot, double top) {
   const double column = (kWidth - kLeft - kRight) / kLegendColumns;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const PlotSeries& series = plot.series[i];
+    const std::size_t row = i / kLegendColumns;
     const double left = kLeft + column * static_cast<double>(i % kLegendColumns);
-    const double y = top + kLegendRow * (0.5 + static_cast<double>(i / kLegendColumns));
+    const double y = top + kLegendRow * (0.5 + static_cast<double>(row));
     if (series.joined)
       svg += line(left, y, left + 40.0, y,
                   fmt::format("stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"{}\"", color_of(series),

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <set>
 
 #include "parallel.hpp"
-#include "scene/json_reader.hpp"
+#include "result_files.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/scene/scene_json.hpp"
@@ -17,146 +16,44 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kIndexFormat = "tubebin results 1";
-constexpr const char* kResultFormat = "tubebin result 1";
-constexpr int kMaxPoints = std::numeric_limits<int>::max();
-constexpr std::uint64_t kMaxLabel = std::numeric_limits<std::uint32_t>::max();
-
-/// index.json: what the folder is to hold.
-struct Index {
-  std::string dataset;
-  std::vector<std::string> methods;
-  std::vector<double> ratios;
-  std::vector<std::string> scenes;
-  std::string configuration;
-};
-
-void check_format(const JsonPlace& root, const char* expected) {
-  if (root.at("format").text() != expected) root.at("format").fail(fmt::format("\"{}\"", expected));
-}
-
-Index read_index(const std::string& folder) {
+ResultsIndex read_index(const std::string& folder) {
   if (!fs::is_directory(folder)) throw_io_error("{}: is no folder", folder);
   const std::string path = folder + "/index.json";
   if (!fs::exists(path))
     throw_io_error(
         "{}: has no index.json, so it is no results folder of model_tubes{}", folder,
         fs::exists(folder + "/manifest.jsonl") ? "; it is a data set, which --predictions can be scored on" : "");
-  const nlohmann::json json = parse_json(read_file(path), path);
-  const JsonPlace root(json, path);
-  check_format(root, kIndexFormat);
-  Index index;
-  index.dataset = (fs::path(folder) / root.at("dataset").text()).lexically_normal().string();
-  for (const JsonPlace& method : root.at("methods").elements()) index.methods.push_back(method.text());
-  for (const JsonPlace& ratio : root.at("ratios").elements()) index.ratios.push_back(ratio.number());
-  for (const JsonPlace& scene : root.at("scenes").elements()) index.scenes.push_back(scene.text());
-  for (const char* key : {"tool_version", "dataset", "seed", "options"}) root.at(key);
-  index.configuration = nlohmann::ordered_json{
-      {"tool_version", json["tool_version"]},
-      {"dataset", json["dataset"]},
-      {"seed", json["seed"]},
-      {"options",
-       json["options"]}}.dump(2);
-  return index;
+  return parse_results_index(read_file(path), path);
 }
 
-Contingency read_contingency(const JsonPlace& root, const std::string& path) {
-  if (!root.has("contingency"))
-    throw_io_error("{}: /contingency: missing; the cloud has neither labels nor known colours, so it cannot be scored",
-                   path);
-  std::vector<std::tuple<SegmentId, SegmentId, std::int64_t>> entries;
-  std::set<SegmentId> truth_ids;
-  std::set<SegmentId> predicted_ids;
-  for (const JsonPlace& entry : root.at("contingency").elements()) {
-    const std::vector<JsonPlace> parts = entry.elements(3);
-    const auto truth = static_cast<SegmentId>(parts[0].whole(0, kMaxLabel));
-    const auto predicted = static_cast<SegmentId>(parts[1].whole(0, kMaxLabel));
-    entries.emplace_back(truth, predicted, static_cast<std::int64_t>(parts[2].whole(0, kMaxPoints)));
-    truth_ids.insert(truth);
-    if (predicted != kNullId) predicted_ids.insert(predicted);
-  }
-  Contingency contingency;
-  contingency.bin_id = 0;
-  contingency.truth_ids.assign(truth_ids.begin(), truth_ids.end());
-  contingency.predicted_ids.assign(predicted_ids.begin(), predicted_ids.end());
-  contingency.unlabeled.assign(truth_ids.size(), 0);
-  contingency.counts =
-      Counts::Zero(static_cast<Eigen::Index>(truth_ids.size()), static_cast<Eigen::Index>(predicted_ids.size()));
-  for (const auto& [truth, predicted, points] : entries) {
-    const auto row = std::distance(truth_ids.begin(), truth_ids.find(truth));
-    if (predicted == kNullId) contingency.unlabeled[static_cast<std::size_t>(row)] += points;
-    else contingency.counts(row, std::distance(predicted_ids.begin(), predicted_ids.find(predicted))) += points;
-  }
-  const auto filtered_points = static_cast<std::int64_t>(root.at("filtered_points").whole(0, kMaxPoints));
-  if (contingency.total() != filtered_points)
-    root.at("filtered_points").fail(fmt::format("{}, which the contingency's points sum to", contingency.total()));
-  return contingency;
-}
-
-std::vector<Centerline> read_model(const std::string& path) {
-  const nlohmann::json json = parse_json(read_file(path), path);
-  std::vector<Centerline> model;
-  for (const JsonPlace& tube : JsonPlace(json, path).at("tubes").elements()) {
-    Centerline line;
-    for (const JsonPlace& cylinder : tube.at("cylinders").elements())
-      line.push_back({cylinder.at("start").vector(), cylinder.at("end").vector(),
-                      cylinder.has("bridged") && cylinder.at("bridged").flag()});
-    model.push_back(std::move(line));
-  }
-  return model;
-}
-
-/// A number with as few digits as tell it exactly, as in the runs' folder names.
-std::string run_folder(const std::string& scene, const std::string& method, double ratio) {
-  return fmt::format("{}/{}_{}", scene, method, ratio);
+std::map<std::string, std::string> read_failures(const std::string& folder) {
+  const std::string path = folder + "/failures.jsonl";
+  if (!fs::exists(path)) return {};
+  return parse_failures(read_file(path), path);
 }
 
 RunScore read_run(const std::string& folder, RunKey key, const SceneTruth* truth) {
   const std::string path = folder + "/result.json";
-  const nlohmann::json json = parse_json(read_file(path), path);
-  const JsonPlace root(json, path);
-  check_format(root, kResultFormat);
-  key.set = root.at("set").text();
-  key.tubes = root.at("tubes").integer({0, 1000000});
-  key.case_number = root.at("case").integer({0, 1000000000});
-  if (root.at("scene").text() != key.scene) root.at("scene").fail(fmt::format("\"{}\", the folder's scene", key.scene));
-  const std::string model_path = folder + "/model.json";
-  const bool has_model = truth != nullptr && fs::exists(model_path);
-  const Contingency contingency = read_contingency(root, path);
-  const std::vector<Centerline> model = has_model ? read_model(model_path) : std::vector<Centerline>{};
-  RunScore run = score_run(key, contingency, match_segments(contingency), truth, model);
+  const RunCounts counts = parse_run_counts(read_file(path), path);
+  if (counts.scene != key.scene)
+    throw_io_error("{}: /scene: \"{}\" is not valid; valid: \"{}\", the folder's scene", path, counts.scene, key.scene);
+  key.set = counts.set;
+  key.tubes = counts.tubes;
+  key.case_number = counts.case_number;
+  std::vector<Centerline> model;
+  if (const std::string file = folder + "/model.json"; truth != nullptr && fs::exists(file))
+    model = parse_model_centerlines(read_file(file), file);
+  RunScore run = score_run(key, counts.contingency, match_segments(counts.contingency), truth, model);
   // Segments without a point in the filtered cloud are tubes of the model all the same.
-  run.scores.predicted_tubes = std::max(run.scores.predicted_tubes, root.at("model_tubes").integer({0, kMaxPoints}));
+  run.scores.predicted_tubes = std::max(run.scores.predicted_tubes, counts.model_tubes);
   run.folder = folder;
   if (fs::exists(folder + "/filtered.pcd") && fs::exists(folder + "/labeled.pcd")) {
     run.filtered = folder + "/filtered.pcd";
     run.labeled = folder + "/labeled.pcd";
   }
-  if (const std::string times = folder + "/times.json"; fs::exists(times)) {
-    const nlohmann::json times_json = parse_json(read_file(times), times);
-    run.seconds = JsonPlace(times_json, times).at("total").number();
-  }
+  if (const std::string file = folder + "/times.json"; fs::exists(file))
+    run.seconds = parse_modeling_seconds(read_file(file), file);
   return run;
-}
-
-/// Reasons by run folder, as failures.jsonl gives them.
-std::map<std::string, std::string> read_failures(const std::string& folder) {
-  std::map<std::string, std::string> reasons;
-  const std::string path = folder + "/failures.jsonl";
-  if (!fs::exists(path)) return reasons;
-  const std::string text = read_file(path);
-  for (std::size_t start = 0, line = 1; start < text.size(); ++line) {
-    const std::size_t end = std::min(text.find('\n', start), text.size());
-    if (end > start) {
-      const std::string name = fmt::format("{}:{}", path, line);
-      const nlohmann::json json = parse_json(text.substr(start, end - start), name);
-      const JsonPlace root(json, name);
-      reasons[run_folder(root.at("scene").text(), root.at("method").text(), root.at("ratio").number())] =
-          root.at("error").text();
-    }
-    start = end + 1;
-  }
-  return reasons;
 }
 
 /// A run without a result, with every tube of the scene missed.
@@ -183,7 +80,7 @@ struct SceneRuns {
   bool has_truth = false;
 };
 
-SceneRuns read_scene_runs(const std::string& folder, const Index& index, const std::string& scene,
+SceneRuns read_scene_runs(const std::string& folder, const ResultsIndex& index, const std::string& scene,
                           const std::map<std::string, std::string>& failures) {
   std::optional<SceneRecord> record;
   std::optional<SceneTruth> truth;
@@ -226,8 +123,9 @@ void append(Evaluation& evaluation, SceneRuns& scene) {
 
 /// One folder's runs, added to the evaluation.
 void read_folder(const std::string& folder, const ResultsOptions& options, Evaluation& evaluation) {
-  Index index = read_index(folder);
-  if (!options.dataset.empty()) index.dataset = options.dataset;
+  ResultsIndex index = read_index(folder);
+  index.dataset =
+      options.dataset.empty() ? (fs::path(folder) / index.dataset).lexically_normal().string() : options.dataset;
   const std::map<std::string, std::string> failures = read_failures(folder);
   std::vector<SceneRuns> scenes(index.scenes.size());
   parallel_for(

@@ -54,10 +54,25 @@ class FieldsFromJson : public Fields {
   const JsonPlace& object_;
 };
 
+/// The JSON library walks values by recursion, so their depth must be bounded before it sees them.
+void check_depth(std::string_view text, const std::string& name) {
+  constexpr int kMaxDepth = 100;
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (in_string && text[i] == '\\') ++i;
+    else if (text[i] == '"') in_string = !in_string;
+    else if (!in_string && (text[i] == '[' || text[i] == '{') && ++depth > kMaxDepth)
+      throw_io_error("{}: is nested more than {} deep; not valid", name, kMaxDepth);
+    else if (!in_string && (text[i] == ']' || text[i] == '}')) --depth;
+  }
+}
+
 }  // namespace
 
 nlohmann::json parse_json(std::string_view text, const std::string& name) {
   if (text.empty()) throw_io_error("{}: the file is empty; expected JSON", name);
+  check_depth(text, name);
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {

@@ -1,14 +1,13 @@
 // Interruptions, kills and full disks, really done: what is complete stays, a new run completes the rest, and the
 // result has the same bytes as an undisturbed run.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <sys/mount.h>
-#include <sys/vfs.h>
 
 #include <chrono>
 #include <random>
 #include <thread>
 
-#include "dataset/program.hpp"
+#include "dataset/faults.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
 #include "tubebin/dataset/manifest.hpp"
 
@@ -18,23 +17,6 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-/// Processes whose command line names the folder.
-std::vector<pid_t> processes_of(const std::string& folder) {
-  std::vector<pid_t> found;
-  for (const fs::directory_entry& entry : fs::directory_iterator("/proc")) {
-    const std::string name = entry.path().filename().string();
-    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    if (read_text(entry.path() / "cmdline").find(folder) != std::string::npos) found.push_back(std::stoi(name));
-  }
-  return found;
-}
-
-/// Waits for something that must come; the test's own time limit ends a wait that is in vain.
-template <typename Condition>
-void wait_until(Condition condition) {
-  while (!condition()) std::this_thread::sleep_for(1ms);
-}
 
 class Interruption : public ::testing::Test {
  protected:
@@ -150,52 +132,37 @@ TEST_F(Interruption, ASecondRunIsRefusedUntilTheFirstIsDead) {
   expect_completed_as_undisturbed(data);
 }
 
-/// A small file system of its own, where the test may mount one.
 class FullDisk : public Interruption {
  protected:
   void SetUp() override {
-    fs::create_directory(disk_);
-    if (mount("tmpfs", disk_.c_str(), "tmpfs", 0, "size=4m") != 0)
-      GTEST_SKIP() << "cannot mount a small tmpfs (needs root): " << std::strerror(errno);
-    mounted_ = true;
-  }
-  void TearDown() override {
-    if (mounted_) umount2(disk_.c_str(), MNT_DETACH);
+    if (!disk_.mounted()) GTEST_SKIP() << disk_.why_not();
   }
 
-  /// A file that leaves so many bytes free.
-  void leave_free(std::uintmax_t bytes) {
-    fs::remove(disk_ + "/filler");
-    const std::uintmax_t available = fs::space(disk_).available;
-    write_text(disk_ + "/filler", std::string(available > bytes ? available - bytes : 0, 'x'));
-  }
-
-  std::string disk_ = folder_ / "disk";
-  bool mounted_ = false;
+  SmallDisk disk_;
 };
 
 TEST_F(FullDisk, EndsTheRunAndKeepsWhatIsWhole) {
   for (const std::uintmax_t free : {0, 4'096, 10'000, 40'000, 100'000, 300'000, 600'000}) {
-    leave_free(free);
-    const std::string data = disk_ + fmt::format("/data_{}", free);
+    disk_.leave_free(free);
+    const std::string data = disk_ / fmt::format("data_{}", free);
     const ProgramResult full = run_generate_dataset(command(data));
     EXPECT_EQ(full.exit_code, 1) << free << full.error;
-    EXPECT_THAT(full.error, AllOf(HasSubstr(disk_), HasSubstr("No space left"))) << free;
+    EXPECT_THAT(full.error, AllOf(HasSubstr(disk_.path()), HasSubstr("No space left"))) << free;
     if (fs::exists(data)) {
       expect_only_whole_scenes(data);
       for (const auto& [name, bytes] : scene_files(data)) EXPECT_EQ(name.find("/."), std::string::npos) << name;
     }
-    fs::remove(disk_ + "/filler");
+    disk_.leave_all_free();
     expect_completed_as_undisturbed(data);
     fs::remove_all(data);
   }
 }
 
 TEST_F(FullDisk, AReadOnlyDiskIsNamed) {
-  ASSERT_EQ(mount("tmpfs", disk_.c_str(), "tmpfs", MS_REMOUNT | MS_RDONLY, "size=4m"), 0);
-  const ProgramResult result = run_generate_dataset(command(disk_ + "/data"));
+  disk_.make_read_only();
+  const ProgramResult result = run_generate_dataset(command(disk_ / "data"));
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.error, AllOf(HasSubstr(disk_), HasSubstr("Read-only")));
+  EXPECT_THAT(result.error, AllOf(HasSubstr(disk_.path()), HasSubstr("Read-only")));
 }
 
 }  // namespace

@@ -24,6 +24,10 @@ void replay(const char* target, void (*function)(std::string_view)) {
 TEST(FuzzReplay, Cloud) { replay("cloud", fuzz::cloud); }
 TEST(FuzzReplay, TubesTxt) { replay("tubes_txt", fuzz::tubes_txt); }
 TEST(FuzzReplay, SceneJson) { replay("scene_json", fuzz::scene_json); }
+TEST(FuzzReplay, ResultIndex) { replay("result_index", fuzz::result_index); }
+TEST(FuzzReplay, Run) { replay("run", fuzz::run); }
+TEST(FuzzReplay, Times) { replay("times", fuzz::times); }
+TEST(FuzzReplay, Failures) { replay("failures", fuzz::failures); }
 TEST(FuzzReplay, Yaml) { replay("yaml", fuzz::yaml); }
 
 }  // namespace

@@ -8,9 +8,12 @@
 #include <string>
 #include <string_view>
 
+#include "evaluation/result_files.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/yaml.hpp"
+#include "tubebin/evaluation/metrics.hpp"
+#include "tubebin/evaluation/run_score.hpp"
 #include "tubebin/scene/scene_json.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 #include "tubebin/tube/tube_generator.hpp"
@@ -68,6 +71,63 @@ inline void scene_json(std::string_view bytes) {
   }
   const std::string text = format_scene_json(record);
   require(format_scene_json(parse_scene_json(text, "round trip")) == text, "the scene reads back");
+}
+
+inline void result_index(std::string_view bytes) {
+  try {
+    parse_results_index(bytes, "fuzz");
+  } catch (const IoError&) {
+  }
+}
+
+inline void failures(std::string_view bytes) {
+  try {
+    parse_failures(bytes, "fuzz");
+  } catch (const IoError&) {
+  }
+}
+
+/// Two tubes that cross, as ground truth.
+inline const SceneTruth& two_tubes() {
+  static const SceneTruth truth = [] {
+    PlacedTube along, across;
+    along.tube = {.radius = 0.01,
+                  .nodes = {{-0.1, 0.0, 0.0}, {0.1, 0.0, 0.0}},
+                  .cylinders = {{.node_a = 0, .node_b = 1, .order = 0}}};
+    across.tube = {.radius = 0.01,
+                   .nodes = {{0.0, -0.1, 0.03}, {0.0, 0.1, 0.03}},
+                   .cylinders = {{.node_a = 0, .node_b = 1, .order = 0}}};
+    return SceneTruth(Scene{.tubes = {along, across}});
+  }();
+  return truth;
+}
+
+inline bool is_share(double value) { return value >= 0.0 && value <= 1.0; }
+
+/// result.json, a line "---" and model.json, which are scored as `evaluate` does.
+inline void run(std::string_view bytes) {
+  constexpr std::string_view kDivider = "\n---\n";
+  const std::size_t divider = bytes.find(kDivider);
+  RunScore score;
+  try {
+    const RunCounts counts = parse_run_counts(bytes.substr(0, divider), "fuzz result");
+    std::vector<Centerline> model;
+    if (divider != std::string_view::npos)
+      model = parse_model_centerlines(bytes.substr(divider + kDivider.size()), "fuzz model");
+    score = score_run({}, counts.contingency, match_segments(counts.contingency), &two_tubes(), model);
+  } catch (const IoError&) {
+    return;
+  }
+  require(is_share(score.micro_recall), "micro-recall is a share");
+  for (const TubeScore& tube : score.scores.tubes)
+    require(is_share(tube.recall()) && is_share(tube.precision()) && is_share(tube.iou()), "measures are shares");
+}
+
+inline void times(std::string_view bytes) {
+  try {
+    require(parse_modeling_seconds(bytes, "fuzz") >= 0.0, "a time is not negative");
+  } catch (const IoError&) {
+  }
 }
 
 /// An options struct with a field of every kind.

@@ -8,7 +8,7 @@
 namespace tubebin {
 
 struct GeneratedScene {
-  DropFailure failure = DropFailure::none;
+  std::string failure;  ///< in a word, as rejects are counted by; empty where the scene is good
   std::string failure_detail;
   SceneContent content;  ///< empty after a failure
   DropFigures physics;

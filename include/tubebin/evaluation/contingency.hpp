@@ -36,6 +36,9 @@ struct Contingency {
   bool is_bin(std::size_t row) const { return bin_id && truth_ids[row] == *bin_id; }
 };
 
+/// Throws IoError where there are so many different ids that they can't be segments; `name` is of the file, if any.
+void require_segments(std::size_t truth_count, std::size_t predicted_count, const std::string& name = "");
+
 /// Counts the pairs (truth[i], predicted[i]); both have one id a point. Throws IoError where there are so
 /// many different ids that they can't be segments.
 Contingency count_pairs(std::span<const SegmentId> truth, std::span<const SegmentId> predicted,

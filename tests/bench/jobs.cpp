@@ -1,0 +1,62 @@
+/// The three small, fixed jobs whose instructions are counted (scripts/instruction_counts.sh): bench_jobs JOB, where JOB
+/// is generate, model or evaluate. Only what happens within run_job() counts; the rest prepares.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "evaluation/synthetic_results.hpp"
+#include "tubebin/dataset/generate_scene.hpp"
+#include "tubebin/dataset/model_cloud.hpp"
+#include "tubebin/evaluation/results_folder.hpp"
+
+namespace tubebin {
+namespace {
+
+using Job = std::function<std::size_t()>;
+
+/// Three tubes, dropped and scanned; without writing, whose cost is the disk's.
+Job generate() {
+  DatasetConfig config;
+  config.scanner.width = 640;
+  config.scanner.height = 400;
+  return [config] {
+    GeneratedScene scene;
+    for (int attempt = 0; attempt == 0 || !scene.failure.empty(); ++attempt)
+      scene = generate_scene(config, {.set = "A", .tubes = 3, .case_number = 1}, attempt);
+    return scene.content.cloud.size();
+  };
+}
+
+Job model() {
+  return [] {
+    const CloudToModel input = read_cloud_to_model(TUBEBIN_SOURCE_DIR "/data/A10/003/cloud.pcd");
+    return model_cloud(input, ModelConfig{}).tubes.size();
+  };
+}
+
+Job evaluate() {
+  const auto folder = std::make_shared<testing::TemporaryFolder>();
+  testing::write_synthetic_sweep(folder->path(), {});
+  return [folder] { return read_results({folder->path() / "results"}, {}).runs.size(); };
+}
+
+}  // namespace
+}  // namespace tubebin
+
+/// By this name callgrind knows when to count.
+extern "C" [[gnu::noinline]] std::size_t tubebin_run_job(const std::function<std::size_t()>& job) { return job(); }
+
+int main(int argc, char** argv) try {
+  const std::map<std::string, tubebin::Job (*)()> jobs = {
+      {"generate", tubebin::generate}, {"model", tubebin::model}, {"evaluate", tubebin::evaluate}};
+  const auto job = argc == 2 ? jobs.find(argv[1]) : jobs.end();
+  if (job == jobs.end()) tubebin::throw_config_error("usage: bench_jobs generate|model|evaluate");
+  return tubebin_run_job(job->second()) > 0 ? 0 : 1;
+} catch (const std::exception& error) {
+  fmt::print(stderr, "{}\n", error.what());
+  return 2;
+}
