@@ -122,11 +122,14 @@ std::function<void()> begin_whole_folder(const std::string& path, const std::map
   return [folder = std::make_shared<FolderOnItsWay>(path, files)] { folder->arrive(); };
 }
 
+bool is_unfinished_folder(const std::string& path) {
+  const std::string name = fs::path(path).filename().string();
+  return name.starts_with('.') && name.ends_with(kUnfinishedSuffix);
+}
+
 void remove_unfinished_folders(const std::string& folder) try {
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with('.') && name.ends_with(kUnfinishedSuffix)) fs::remove_all(entry.path());
-  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (is_unfinished_folder(entry.path().string())) fs::remove_all(entry.path());
 } catch (const fs::filesystem_error& error) {
   throw_io_error("{}: cannot be cleared of what is unfinished: {}", folder, error.code().message());
 }

@@ -12,6 +12,9 @@ namespace tubebin {
 /// left. Both throw IoError.
 std::function<void()> begin_whole_folder(const std::string& path, const std::map<std::string, std::string>& files);
 
+/// True for what a kill leaves behind while a folder is being written.
+bool is_unfinished_folder(const std::string& path);
+
 /// Removes what kills left in `folder` of folders that were being written into it. Throws IoError.
 void remove_unfinished_folders(const std::string& folder);
 
