@@ -175,29 +175,6 @@ TEST_F(GenerateDataset, DrawsPreviewsThatNeitherChangeNorDependOnTheRest) {
   EXPECT_EQ(with_pictures, scene_files(data_));
 }
 
-TEST_F(GenerateDataset, DoesUnusualRequests) {
-  const std::vector<std::string> requests = {
-      "tube: {cylinder_count_min: 1, cylinder_count_max: 1}",
-      "tube: {length: 0.04, cylinder_count_min: 2, cylinder_count_max: 2}",
-      "tube: {radius: 0.002}",
-      "tube: {bend_angle_max_deg: 0}",
-      "tube: {bend_angle_max_deg: 120}",
-      "scanner: {position: [0.5, 0.3, 1.5], rotation_deg: [10, -20, 30]}",
-      "scanner: {position: [0, 0, 0.05], range_min: 0.001, width: 200, height: 200}",
-      "scanner: {rotation_deg: [180, 0, 0]}",  // it sees nothing
-      "scanner: {width: 64, height: 40}",
-      "scanner: {width: 1, height: 1}",
-      "physics: {friction_tube: 0, friction_bin: 0}"};
-  for (std::size_t i = 0; i < requests.size(); ++i) {
-    write_text(config_, "tubes: [2]\ncases: 1\n" + requests[i] + "\n");
-    const std::string data = folder_ / std::to_string(i);
-    const ProgramResult result = generate(data);
-    EXPECT_EQ(result.exit_code, 0) << requests[i] << ": " << result.error;
-    const ProgramResult verified = run_generate_dataset({"--verify", data});
-    EXPECT_EQ(verified.exit_code, 0) << requests[i] << ": " << verified.out;
-  }
-}
-
 TEST_F(GenerateDataset, SaysWhyATubeDoesNotFit) {
   write_text(config_, "tubes: [1]\ncases: 1\nattempts_max: 2\nbin: {length: 0.02, width: 0.02}\n");
   const ProgramResult result = generate(data_);

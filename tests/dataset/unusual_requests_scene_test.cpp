@@ -72,7 +72,7 @@ TEST_P(Granted, GivesWhatWasAskedFor) {
     const Cloud cloud = read_cloud(data_ + "/" + id + "/cloud.pcd");
     EXPECT_EQ(cloud.width, static_cast<std::uint32_t>(scene.window.width));
     EXPECT_EQ(cloud.height, static_cast<std::uint32_t>(scene.window.height));
-    EXPECT_TRUE(std::any_of(cloud.labels.begin(), cloud.labels.end(), [](Label label) { return label > 0; }));
+    EXPECT_TRUE(std::any_of(cloud.points.begin(), cloud.points.end(), is_finite));
   }
 
   const std::string results = folder_ / "results";
@@ -100,9 +100,12 @@ constexpr Request kGranted[] = {
      "cylinder_count_min: 2, cylinder_count_max: 5}}"},
     {"BendsUpTo120Degrees", "{tubes: [3], cases: 1, tube: {bend_angle_max_deg: 120}}"},
     {"TiltedScanner", "{tubes: [5], cases: 1, scanner: {position: [0, -0.8, 1.6], rotation_deg: [27, 0, 0]}}"},
+    {"ScannerTurnedAboutAllAxes",
+     "{tubes: [2], cases: 1, scanner: {position: [0.5, 0.3, 1.5], rotation_deg: [10, -20, 30]}}"},
     {"ScannerInsideTheFieldOfTubes",
      "{tubes: [20], cases: 1, scanner: {position: [0, 0, 0.05], range_min: 0.001, width: 320, height: 200}}"},
     {"FewPixels", "{tubes: [5], cases: 1, scanner: {width: 64, height: 40}}"},
+    {"OnePixel", "{tubes: [2], cases: 1, scanner: {width: 1, height: 1}}"},
     {"ManyPixels", "{tubes: [5], cases: 1, scanner: {width: 4096, height: 3000}}"},
     {"NoFriction", "{tubes: [2], cases: 1, physics: {friction_tube: 0, friction_bin: 0}}"},
 };
