@@ -34,6 +34,8 @@ class StageClock {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+bool has_point(const Cloud& cloud) { return std::any_of(cloud.points.begin(), cloud.points.end(), is_finite); }
+
 }  // namespace
 
 PileRelations relate_pile(const Scene& scene) {

@@ -97,7 +97,9 @@ inline const SceneTruth& two_tubes() {
     across.tube = {.radius = 0.01,
                    .nodes = {{0.0, -0.1, 0.03}, {0.0, 0.1, 0.03}},
                    .cylinders = {{.node_a = 0, .node_b = 1, .order = 0}}};
-    return SceneTruth(Scene{.tubes = {along, across}});
+    Scene scene;
+    scene.tubes = {along, across};
+    return SceneTruth(scene);
   }();
   return truth;
 }
