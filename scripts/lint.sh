@@ -19,7 +19,7 @@ cpp_files apps bench include src tests | xargs -0 clang-format-14 --dry-run --We
   { echo "Formatting differs; scripts/lint.sh --format writes it." >&2; exit 1; }
 
 [ -f build/compile_commands.json ] || cmake --preset release > /dev/null
-# One file a process: the costs of files differ widely. clang-tidy counts the warnings of system headers on stderr.
+# One file a process: the costs of files differ widely. Warnings are GCC's to give (-w), also in builds with -Werror. clang-tidy counts the warnings of system headers on stderr.
 find apps src -name '*.cpp' -print0 | sort -z |
-  xargs -0 -n 1 -P "$(nproc)" clang-tidy-14 -p build --quiet 2> >(grep -vE '^[0-9]+ warnings? ' >&2) ||
+  xargs -0 -n 1 -P "$(nproc)" clang-tidy-14 -p build --quiet --extra-arg=-w 2> >(grep -vE '^[0-9]+ warnings? ' >&2) ||
   { echo "clang-tidy found something." >&2; exit 1; }
