@@ -73,10 +73,16 @@ void describe(Fields& fields, DatasetConfig& config) {
   fields.group("bin", "inner size of the bin", [&](Fields& inner) { describe(inner, config.bin); });
   fields.group("physics", "the drop and the checks of its result",
                [&](Fields& inner) { describe(inner, config.physics); });
-  fields.group("scanner", "the virtual 3D scanner", [&](Fields& inner) { describe(inner, config.scanner); });
+  fields.group("scanner", "the virtual 3D scanner", [&](Fields& inner) {
+    describe(inner, config.scanner);
+    inner.group("effects", "what a real scanner adds (docs/scanner_effects.md); all off: exact rays",
+                [&](Fields& effects) { describe(effects, config.scanner.effects); });
+  });
   fields.group("output", "what is written for each scene", [&](Fields& inner) {
     inner.choice("format", config.output.format, {"pcd_binary", "pcd_compressed", "pcd_ascii", "ply_binary"},
                  "file format of the cloud");
+    inner.flag("clean_cloud", config.output.clean_cloud,
+               "also write cloud_clean, the scene as exact rays see it, pixel by pixel the twin of a cloud with effects");
     inner.flag("preview", config.output.preview,
                "also render preview.png and ground_truth.png, the colours in the scanner's view");
   });

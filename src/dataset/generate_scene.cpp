@@ -72,7 +72,7 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
   }
 
   const Scene scene{.bin = config.bin, .scanner = config.scanner, .tubes = std::move(drop.tubes)};
-  Scan scanned = scan(scene);
+  Scan scanned = scan(scene, attempt_seed(config, id, attempt));
   clock.end_stage("scan");
   if (!has_point(scanned.cloud)) {
     result.failure = "unseen";
@@ -94,6 +94,7 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
                            .contacts = std::move(drop.contacts),
                            .relations = std::move(relations)};
   result.content.cloud = std::move(scanned.cloud);
+  if (config.output.clean_cloud) result.content.clean_cloud = scan_exactly(scene).cloud;
 
   if (config.output.preview) {
     result.content.images["preview.png"] = png(render_preview(scene, kPreviewWidth, kPreviewHeight));

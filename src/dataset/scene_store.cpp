@@ -32,15 +32,20 @@ void check_reads_back(const std::string& bytes, const Cloud& cloud, const std::s
 
 std::string SceneStore::cloud_name() const { return std::string("cloud") + extension(options_.format); }
 
+std::string SceneStore::clean_cloud_name() const { return std::string("cloud_clean") + extension(options_.format); }
+
 std::function<std::map<std::string, FileRecord>()> SceneStore::begin_write(const std::string& scene_name,
                                                                            const SceneContent& content) const {
   std::map<std::string, std::string> files = content.images;
   files[cloud_name()] = format_cloud(content.cloud, options_.format);
+  if (content.clean_cloud) files[clean_cloud_name()] = format_cloud(*content.clean_cloud, options_.format);
   files["scene.json"] = format_scene_json(content.record);
   files["tubes.txt"] = format_tubes_txt(content.record.scene.tubes);
 
   const std::function<void()> finish = begin_whole_folder(path(scene_name), files);
   check_reads_back(files[cloud_name()], content.cloud, path(scene_name) + "/" + cloud_name());
+  if (content.clean_cloud)
+    check_reads_back(files[clean_cloud_name()], *content.clean_cloud, path(scene_name) + "/" + clean_cloud_name());
   std::map<std::string, FileRecord> records;
   for (const auto& [name, bytes] : files) records[name] = record_bytes(bytes);
   return [finish, records] {

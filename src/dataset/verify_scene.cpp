@@ -8,6 +8,7 @@
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
 #include "tubebin/dataset/verify_dataset.hpp"
+#include "tubebin/scan/scanner.hpp"
 #include "tubebin/scene/scene_json.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 
@@ -85,7 +86,8 @@ void check_cloud_layout(const Cloud& cloud, const SceneRecord& scene, Problems& 
     problems.push_back("the cloud has no colour or no label for each point");
 }
 
-void check_points(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
+/// Labels and colours; that points lie on their surfaces where `exact` says so. Returns the tubes' pixels.
+std::vector<std::size_t> check_points(const Cloud& cloud, const SceneRecord& scene, bool exact, Problems& problems) {
   const std::vector<BodySurface> surfaces = surfaces_of(scene.scene);
   std::vector<std::size_t> pixels(surfaces.size(), 0);
   std::size_t unknown = 0, miscolored = 0, off_surface = 0;
@@ -98,7 +100,7 @@ void check_points(const Cloud& cloud, const SceneRecord& scene, Problems& proble
     } else {
       ++pixels[label];
       miscolored += cloud.colors[i] != scene.colors[label];
-      off_surface += !(surfaces[label].distance(cloud.points[i].cast<double>()) <= kSurfaceTolerance);
+      off_surface += exact && !(surfaces[label].distance(cloud.points[i].cast<double>()) <= kSurfaceTolerance);
     }
   }
   if (unknown > 0) problems.push_back(fmt::format("{} points have labels of no tube", unknown));
@@ -107,9 +109,47 @@ void check_points(const Cloud& cloud, const SceneRecord& scene, Problems& proble
     problems.push_back(fmt::format("{} points lie more than {} mm off the surface of their label", off_surface,
                                    kSurfaceTolerance * 1e3));
   pixels.erase(pixels.begin());
+  return pixels;
+}
+
+/// How many points are others than those of `expected`: of another label, missing, or farther off than exact surfaces
+/// may be.
+std::size_t count_differences(const Cloud& cloud, const Cloud& expected) {
+  if (cloud.size() != expected.size()) return std::max(cloud.size(), expected.size());
+  std::size_t differences = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Point &found = cloud.points[i], &wanted = expected.points[i];
+    const bool same_place = is_finite(wanted) ? (found - wanted).norm() <= static_cast<float>(kSurfaceTolerance)
+                                              : !is_finite(found);
+    differences += !same_place || cloud.labels[i] != expected.labels[i];
+  }
+  return differences;
+}
+
+/// A cloud with effects is off the surfaces by design, by its seed's noise. So it is compared with what the seed gives,
+/// and the surfaces with its noise-free twin.
+void check_effects(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
+  if (const std::size_t differing = count_differences(cloud, scan(scene.scene, scene.seed).cloud))
+    problems.push_back(fmt::format("{} points are not what the scanner's effects make of the scene", differing));
+  check_points(scan_exactly(scene.scene).cloud, scene, true, problems);
+}
+
+void check_cloud(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
+  const bool has_effects = scene.scene.scanner.effects.any();
+  const std::vector<std::size_t> pixels = check_points(cloud, scene, !has_effects, problems);
   if (pixels != scene.tube_pixels)
     problems.push_back(fmt::format("the cloud shows [{}] pixels of the tubes, scene.json says [{}]",
                                    fmt::join(pixels, ", "), fmt::join(scene.tube_pixels, ", ")));
+  if (has_effects) check_effects(cloud, scene, problems);
+}
+
+void check_clean_cloud(const std::string& path, const SceneRecord& scene, Problems& problems) {
+  const Cloud clean = read_cloud(path);
+  check_cloud_layout(clean, scene, problems);
+  if (!problems.empty()) return;
+  check_points(clean, scene, true, problems);
+  if (const std::size_t differing = count_differences(clean, scan_exactly(scene.scene).cloud))
+    problems.push_back(fmt::format("{} points of cloud_clean are not the scene as exact rays see it", differing));
 }
 
 void check_contacts(const SceneRecord& scene, const DatasetConfig& config, Problems& problems) {
@@ -163,7 +203,9 @@ void check_content(const std::string& path, const DatasetConfig& config, const S
         fmt::format("a tube moved by {:.3f} mm in the check at the end", record.physics.largest_drift * 1e3));
   const Cloud cloud = read_cloud(path + "/cloud" + extension(config.output.format));
   check_cloud_layout(cloud, scene, problems);
-  if (problems.empty()) check_points(cloud, scene, problems);
+  if (problems.empty()) check_cloud(cloud, scene, problems);
+  if (config.output.clean_cloud)
+    check_clean_cloud(path + "/cloud_clean" + extension(config.output.format), scene, problems);
 }
 
 }  // namespace

@@ -1,8 +1,11 @@
 #include "tubebin/scan/scanner.hpp"
 
+#include <functional>
 #include <limits>
+#include <optional>
 
 #include "scan/embree.hpp"
+#include "scan/measurement.hpp"
 #include "scan/ray_caster.hpp"
 #include "scan/view_window.hpp"
 #include "tubebin/cloud/label_colors.hpp"
@@ -13,20 +16,37 @@ namespace {
 
 PixelWindow whole_image(const Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
 
-/// Calls on_hit(column, row, point in world, label) for every pixel of the window that sees a surface, row by
-/// row.
-template <typename OnHit>
-void cast_rays(const RayCaster& caster, const Camera& camera, const PixelWindow& window, const OnHit& on_hit) {
-  const Vec3 scanner_in_world = camera.world_from_scanner().translation();
-  for (int row = window.y; row < window.y + window.height; ++row) {
-    for (int column = window.x; column < window.x + window.width; ++column) {
-      const Vec3 direction = camera.pixel_direction_in_world(column, row);
-      const Hit hit = caster.first_hit(direction);
-      if (!hit.found()) continue;
-      const Point point = (scanner_in_world + hit.depth * direction).cast<float>();
-      on_hit(column, row, point, hit.label);
-    }
-  }
+/// A pixel's point in world and its label; nothing where the pixel has none.
+struct LabelledPoint {
+  Point point;
+  Label label = 0;
+};
+using PointOfPixel = std::function<std::optional<LabelledPoint>(int column, int row)>;
+
+PointOfPixel exact_points(const RayCaster& caster, const Camera& camera) {
+  return [&](int column, int row) -> std::optional<LabelledPoint> {
+    const Vec3 direction = camera.pixel_direction_in_world(column, row);
+    const Hit hit = caster.first_hit(direction);
+    if (!hit.found()) return std::nullopt;
+    const Vec3 scanner_in_world = camera.world_from_scanner().translation();
+    return LabelledPoint{(scanner_in_world + hit.depth * direction).cast<float>(), hit.label};
+  };
+}
+
+PointOfPixel measured_points(const Measurement& measurement, const Reconstruction& reconstruction) {
+  return [&](int column, int row) -> std::optional<LabelledPoint> {
+    const std::optional<Hit> hit = measurement.measure(column, row);
+    if (!hit) return std::nullopt;
+    return LabelledPoint{reconstruction.point_in_world(column, row, hit->depth).cast<float>(), hit->label};
+  };
+}
+
+/// Calls on_point(column, row, labelled point) for every pixel of the window that has one, row by row.
+template <typename OnPoint>
+void for_each_point(const PointOfPixel& point_of_pixel, const PixelWindow& window, const OnPoint& on_point) {
+  for (int row = window.y; row < window.y + window.height; ++row)
+    for (int column = window.x; column < window.x + window.width; ++column)
+      if (const auto point = point_of_pixel(column, row)) on_point(column, row, *point);
 }
 
 void resize_empty(Cloud& cloud, const PixelWindow& window) {
@@ -39,23 +59,25 @@ void resize_empty(Cloud& cloud, const PixelWindow& window) {
 }
 
 /// One point a pixel of `scan.window`; what lies outside `seen` shows neither bin nor tubes.
-void scan_organized(const RayCaster& caster, const Camera& camera, const PixelWindow& seen,
-                    const std::vector<Color>& colors, Scan& scan) {
+void scan_organized(const PointOfPixel& point_of_pixel, const PixelWindow& seen, const std::vector<Color>& colors,
+                    Scan& scan) {
   resize_empty(scan.cloud, scan.window);
-  cast_rays(caster, camera, seen, [&](int column, int row, const Point& point, Label label) {
+  for_each_point(point_of_pixel, seen, [&](int column, int row, const LabelledPoint& seen_point) {
     const auto index = static_cast<std::size_t>(row - scan.window.y) * scan.cloud.width +
                        static_cast<std::size_t>(column - scan.window.x);
-    scan.cloud.points[index] = point;
+    const Label label = seen_point.label;
+    scan.cloud.points[index] = seen_point.point;
     scan.cloud.colors[index] = colors[label];
     scan.cloud.labels[index] = label;
     if (label > 0) ++scan.tube_pixels[label - 1];
   });
 }
 
-void scan_tubes(const RayCaster& caster, const Camera& camera, const std::vector<Color>& colors, Scan& scan) {
-  cast_rays(caster, camera, scan.window, [&](int, int, const Point& point, Label label) {
+void scan_tubes(const PointOfPixel& point_of_pixel, const std::vector<Color>& colors, Scan& scan) {
+  for_each_point(point_of_pixel, scan.window, [&](int, int, const LabelledPoint& seen_point) {
+    const Label label = seen_point.label;
     if (label == 0) return;
-    scan.cloud.points.push_back(point);
+    scan.cloud.points.push_back(seen_point.point);
     scan.cloud.colors.push_back(colors[label]);
     scan.cloud.labels.push_back(label);
     ++scan.tube_pixels[label - 1];
@@ -63,9 +85,15 @@ void scan_tubes(const RayCaster& caster, const Camera& camera, const std::vector
   scan.cloud.width = static_cast<std::uint32_t>(scan.cloud.size());
 }
 
+void scan_region(const PointOfPixel& point_of_pixel, const PixelWindow& seen, ScanRegion region, Scan& scan) {
+  const std::vector<Color> colors = label_colors(scan.tube_pixels.size());
+  if (region == ScanRegion::tubes) scan_tubes(point_of_pixel, colors, scan);
+  else scan_organized(point_of_pixel, seen, colors, scan);
+}
+
 }  // namespace
 
-Scan scan(const Scene& scene) {
+Scan scan(const Scene& scene, std::uint64_t seed) {
   const Scanner& scanner = scene.scanner;
   const Camera camera(scanner);
   SceneSolids solids = scene_solids(scene);
@@ -73,15 +101,24 @@ Scan scan(const Scene& scene) {
   const PixelWindow seen =
       view_window(solids, tubes_alone ? SeenBodies::tubes : SeenBodies::bin_and_tubes, camera, scanner.range_min);
   const RayCaster caster(std::move(solids), scanner.range_min, scanner.range_max);
-  const std::vector<Color> colors = label_colors(scene.tubes.size());
 
   Scan scan;
   scan.window = scanner.region == ScanRegion::full ? whole_image(camera) : seen;
   scan.tube_pixels.assign(scene.tubes.size(), 0);
   scan.cloud.world_from_sensor = camera.world_from_scanner();
-  if (tubes_alone) scan_tubes(caster, camera, colors, scan);
-  else scan_organized(caster, camera, seen, colors, scan);
+  if (scanner.effects.any()) {
+    const Measurement measurement(scene, caster, camera, seen, seed);
+    const Reconstruction reconstruction(scanner);
+    scan_region(measured_points(measurement, reconstruction), seen, scanner.region, scan);
+  } else {
+    scan_region(exact_points(caster, camera), seen, scanner.region, scan);
+  }
   return scan;
+}
+
+Scan scan_exactly(Scene scene) {
+  scene.scanner.effects = {};
+  return scan(scene);
 }
 
 const char* embree_version() { return RTC_VERSION_STRING; }

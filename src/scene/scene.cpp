@@ -52,6 +52,7 @@ void check(const Scanner& scanner, const KeyPlaces& places, const std::string& p
   if (scanner.range_max <= scanner.range_min)
     places.fail(prefix + ".range_max",
                 fmt::format("{} m is not beyond range_min = {} m", scanner.range_max, scanner.range_min));
+  check(scanner.effects, places, prefix + ".effects");
 }
 
 }  // namespace tubebin

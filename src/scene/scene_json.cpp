@@ -37,6 +37,8 @@ OrderedJson scanner_to_json(Scanner scanner, const PixelWindow& window) {
                         {"fy", to_json(camera.focal_length())},
                         {"cx", scanner.width / 2.0},
                         {"cy", scanner.height / 2.0}};
+  if (scanner.effects.any())
+    json["effects"] = fields_to_json([&](Fields& fields) { describe(fields, scanner.effects); });
   json["window"] = {{"x", window.x}, {"y", window.y}, {"width", window.width}, {"height", window.height}};
   return json;
 }
@@ -125,6 +127,8 @@ Scanner read_scanner(const JsonPlace& place) {
   Scanner scanner;
   place.fields([&](Fields& fields) { describe(fields, scanner); });
   if (scanner.range_max <= scanner.range_min) place.at("range_max").fail("beyond range_min");
+  if (place.has("effects"))
+    place.at("effects").fields([&](Fields& fields) { describe(fields, scanner.effects); });
   const Camera camera(scanner);
   const JsonPlace pose = place.at("pose");
   if (!pose.pose().isApprox(scanner.world_from_scanner(), kDistanceTolerance))

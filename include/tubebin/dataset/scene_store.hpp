@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "tubebin/dataset/dataset_config.hpp"
@@ -17,6 +18,7 @@ namespace tubebin {
 struct SceneContent {
   SceneRecord record;
   Cloud cloud;
+  std::optional<Cloud> clean_cloud;           ///< without the scanner's effects
   std::map<std::string, std::string> images;  ///< PNG files by name, with previews
 };
 
@@ -28,6 +30,8 @@ class SceneStore {
   std::string path(const std::string& scene_name) const { return folder_ + "/" + scene_name; }
   /// "cloud.pcd" or "cloud.ply"
   std::string cloud_name() const;
+  /// "cloud_clean.pcd" or "cloud_clean.ply"
+  std::string clean_cloud_name() const;
 
   /// Begins to write the scene, in the place of any that is there. It is complete when the returned function has
   /// returned its files, after waiting for the disk. Both throw IoError; nothing unfinished is ever under the scene's

@@ -1,4 +1,4 @@
-/// The virtual scanner: exact rays of a pinhole camera against exact shapes.
+/// The virtual scanner: exact rays of a pinhole camera against exact shapes, and what a real scanner makes of them.
 #pragma once
 
 #include "tubebin/cloud/cloud.hpp"
@@ -9,12 +9,16 @@ namespace tubebin {
 struct Scan {
   Cloud cloud;         ///< with colours and labels
   PixelWindow window;  ///< the pixels that the cloud covers (an organized cloud has one point a pixel)
-  std::vector<std::size_t> tube_pixels;  ///< visible pixels of tube k at [k - 1]
+  std::vector<std::size_t> tube_pixels;  ///< pixels that have a point of tube k at [k - 1]
 };
 
-/// Scans the scene with its own scanner. Every point lies on the first surface along its pixel's ray
-/// (within float32 of the exact position).
-Scan scan(const Scene& scene);
+/// Scans the scene with its own scanner. Without effects (scene.scanner.effects) every point lies on the first surface
+/// along its pixel's ray (within float32 of the exact position), whatever the seed. With effects `seed`, the scene's,
+/// decides all randomness, the same for a pixel in every region.
+Scan scan(const Scene& scene, std::uint64_t seed = 0);
+
+/// The noise-free twin of scan(): the scene as exact rays see it. Organized clouds agree pixel by pixel.
+Scan scan_exactly(Scene scene);
 
 /// "3.13.5": the Embree that was compiled in.
 const char* embree_version();

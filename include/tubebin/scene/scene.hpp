@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tubebin/core/yaml.hpp"
+#include "tubebin/scene/scanner_effects.hpp"
 #include "tubebin/tube/tube.hpp"
 
 namespace tubebin {
@@ -45,6 +46,7 @@ struct Scanner {
   double range_min = 0.1;                     ///< metres, along the optical axis, as a camera's near plane
   double range_max = 2.6;                     ///< metres, along the optical axis, inclusive
   ScanRegion region = ScanRegion::bin;
+  ScannerEffects effects;  ///< none by default: exact rays
 
   Pose world_from_scanner() const;
 };
@@ -82,6 +84,7 @@ struct Scene {
 };
 
 void describe(Fields& fields, Bin& bin);
+/// The camera alone, without its effects.
 void describe(Fields& fields, Scanner& scanner);
 void check(const Scanner& scanner, const KeyPlaces& places, const std::string& prefix);
 
