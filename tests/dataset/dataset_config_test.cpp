@@ -68,6 +68,10 @@ TEST(DatasetConfig, RefusesValuesThatContradictEachOther) {
   EXPECT_THAT(refusal_of("tube: {cylinder_count_min: 20}\n"), HasSubstr("tube.cylinder_count_max"));
   EXPECT_THAT(refusal_of("tube: {bend_angle_min_deg: 40}\n"), HasSubstr("tube.bend_angle_max_deg"));
   EXPECT_THAT(refusal_of("scanner: {range_max: 0.05}\n"), StartsWith("c.yaml:1:22: scanner.range_max"));
+  EXPECT_THAT(refusal_of("scanner: {effects: {dropouts: {tube_reflectivity_max: 0.2, tube_reflectivity_min: 0.3}}}\n"),
+              HasSubstr("scanner.effects.dropouts.tube_reflectivity_max: 0.2 is below"));
+  EXPECT_THAT(refusal_of("scanner: {effects: {projector: {enabled: true, position: [0, 0, 3]}}}\n"),
+              HasSubstr("scanner.effects.projector.focus_distance: 2 m is not beyond"));
   EXPECT_THAT(refusal_of("tubes: [1, 5, 1]\n"), StartsWith("c.yaml:1:8: tubes: 1 stands in the list twice"));
 }
 
@@ -111,6 +115,11 @@ TEST(DatasetConfig, CommittedFilesHoldThePapersAndThePublishedValues) {
   EXPECT_EQ(published_a.tube.mass, 0.5);
   EXPECT_EQ(published_b.set, "B");
   EXPECT_NO_THROW(load_config(source_file("config/physics_paper.yaml")));
+  for (const DatasetConfig& paper : {a, b, published_a, published_b}) EXPECT_FALSE(paper.scanner.effects.any());
+  const DatasetConfig zivid_like = load_config(source_file("config/scanner_zivid_like.yaml"));
+  EXPECT_TRUE(zivid_like.scanner.effects.any());
+  for (const std::string& difference : differences(a, zivid_like))
+    EXPECT_THAT(difference, ::testing::AnyOf(StartsWith("scanner.effects."), StartsWith("output.clean_cloud")));
 }
 
 TEST(DatasetConfig, EveryKeyOfACommittedFileHasAComment) {

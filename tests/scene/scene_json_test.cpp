@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -49,6 +50,41 @@ SceneRecord make_record(int tube_count) {
 }
 
 SceneRecord parse(const std::string& text) { return parse_scene_json(text, "scene.json"); }
+
+std::vector<KeyValue> list_effects(ScannerEffects effects) {
+  return list_fields([&](Fields& fields) { describe(fields, effects); });
+}
+
+TEST(SceneJson, ScannerEffectsAreThereWhereAnyIsOn) {
+  SceneRecord record = make_record(2);
+  const json without = json::parse(format_scene_json(record));
+  EXPECT_FALSE(without["scanner"].contains("effects"));
+  record.scene.scanner.effects.range_noise.correlation_length = 3.0;  // of a noise that is off
+  EXPECT_EQ(json::parse(format_scene_json(record)), without);
+
+  ScannerEffects& effects = record.scene.scanner.effects;
+  effects.range_noise.sigma = 0.1 + 0.2e-3;
+  effects.projector = {.enabled = true, .position = {0.3, -0.01, 0.02}};
+  effects.calibration.focal = -0.001;
+  const std::string text = format_scene_json(record);
+  EXPECT_EQ(list_effects(parse(text).scene.scanner.effects), list_effects(effects));
+
+  const json schema = json::parse(read_file(TUBEBIN_SOURCE_DIR "/docs/scene.schema.json"));
+  const std::function<void(const json&, const json&)> same_keys = [&](const json& object, const json& described) {
+    for (const auto& [key, value] : object.items()) {
+      ASSERT_TRUE(described["properties"].contains(key)) << key;
+      if (value.is_object()) same_keys(value, described["properties"][key]);
+    }
+    EXPECT_EQ(described["properties"].size(), object.size());
+    EXPECT_EQ(described["required"].size(), object.size());
+  };
+  same_keys(json::parse(text)["scanner"]["effects"], schema["properties"]["scanner"]["properties"]["effects"]);
+
+  json broken = json::parse(text);
+  broken["scanner"]["effects"]["outliers"]["share"] = 1.5;
+  EXPECT_THAT([&] { parse(broken.dump()); },
+              ::testing::ThrowsMessage<IoError>(HasSubstr("/scanner/effects/outliers/share")));
+}
 
 TEST(SceneJson, EverythingReadsBackBitByBit) {
   const SceneRecord record = make_record(10);
