@@ -119,8 +119,8 @@ std::size_t count_differences(const Cloud& cloud, const Cloud& expected) {
   std::size_t differences = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Point &found = cloud.points[i], &wanted = expected.points[i];
-    const bool same_place = is_finite(wanted) ? (found - wanted).norm() <= static_cast<float>(kSurfaceTolerance)
-                                              : !is_finite(found);
+    const bool same_place =
+        is_finite(wanted) ? (found - wanted).norm() <= static_cast<float>(kSurfaceTolerance) : !is_finite(found);
     differences += !same_place || cloud.labels[i] != expected.labels[i];
   }
   return differences;

@@ -11,7 +11,9 @@ namespace {
 /// The growth has a pole at 90 degrees, and nobody has measured it beyond.
 const double kSteepestIncidence = radians(85.0);
 
-double angle_between(const Vec3& unit_a, const Vec3& unit_b) { return std::atan2(unit_a.cross(unit_b).norm(), unit_a.dot(unit_b)); }
+double angle_between(const Vec3& unit_a, const Vec3& unit_b) {
+  return std::atan2(unit_a.cross(unit_b).norm(), unit_a.dot(unit_b));
+}
 
 double square(double x) { return x * x; }
 
@@ -28,8 +30,7 @@ double quantize_depth(double depth, double step, double reference_distance) {
 }
 
 Reconstruction::Reconstruction(const Scanner& scanner)
-    : scanner_(scanner),
-      focal_length_(Camera(scanner).focal_length() * (1.0 + scanner.effects.calibration.focal)) {
+    : scanner_(scanner), focal_length_(Camera(scanner).focal_length() * (1.0 + scanner.effects.calibration.focal)) {
   const CalibrationError& error = scanner.effects.calibration;
   const Quat rotation = Eigen::AngleAxisd(radians(error.rotation_deg.z()), Vec3::UnitZ()) *
                         Eigen::AngleAxisd(radians(error.rotation_deg.y()), Vec3::UnitY()) *
@@ -48,8 +49,7 @@ Measurement::Measurement(const Scene& scene, const RayCaster& caster, const Came
     : effects_(scene.scanner.effects), caster_(caster), camera_(camera), window_(window), seed_(seed) {
   if (effects_.projector.enabled) projector_.emplace(scene);
   if (effects_.range_noise.sigma > 0.0)
-    range_normals_ =
-        correlated_normals(noise(NoiseStream::range), window, effects_.range_noise.correlation_length);
+    range_normals_ = correlated_normals(noise(NoiseStream::range), window, effects_.range_noise.correlation_length);
 }
 
 std::optional<Hit> Measurement::measure(int column, int row) const {
@@ -68,8 +68,9 @@ std::optional<Measurement::Surface> Measurement::look(int column, int row) const
   Surface surface;
   surface.image_position = {column + 0.5, row + 0.5};
   if (effects_.lateral_noise > 0.0)
-    surface.image_position += effects_.lateral_noise * Eigen::Vector2d(noise(NoiseStream::lateral_x).normal(column, row),
-                                                                       noise(NoiseStream::lateral_y).normal(column, row));
+    surface.image_position +=
+        effects_.lateral_noise * Eigen::Vector2d(noise(NoiseStream::lateral_x).normal(column, row),
+                                                 noise(NoiseStream::lateral_y).normal(column, row));
   const double x = surface.image_position.x(), y = surface.image_position.y();
   const Vec3 direction = camera_.direction_in_world(x, y);
   surface.hit = caster_.first_hit(direction);

@@ -35,7 +35,8 @@ Vec3 tangent(const RayCaster& caster, const Camera& camera, const Eigen::Vector2
 Vec3 surface_normal(const RayCaster& caster, const Camera& camera, double x, double y, const Hit& hit) {
   const Eigen::Vector2d at(x, y);
   const Vec3 to_camera = -camera.direction_in_world(x, y).normalized();
-  const Vec3 normal = tangent(caster, camera, at, {kStep, 0.0}, hit).cross(tangent(caster, camera, at, {0.0, kStep}, hit));
+  const Vec3 normal =
+      tangent(caster, camera, at, {kStep, 0.0}, hit).cross(tangent(caster, camera, at, {0.0, kStep}, hit));
   const double length = normal.norm();
   // A surface that is thinner than the steps shows its edge: as steep as can be seen.
   if (!(length > 0.0) || !std::isfinite(length)) return to_camera.unitOrthogonal();

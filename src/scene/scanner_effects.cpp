@@ -79,8 +79,7 @@ void describe(Fields& fields, ScannerEffects& effects) {
                 "standard deviation, along each image axis, of where a pixel looks; 0: off");
   fields.number("quantization", effects.quantization, {0.0, 0.1}, "m",
                 "depth step at the reference distance, growing with the square of the depth; 0: off");
-  fields.group("projector", "the light beside the camera",
-               [&](Fields& inner) { describe(inner, effects.projector); });
+  fields.group("projector", "the light beside the camera", [&](Fields& inner) { describe(inner, effects.projector); });
   fields.group("dropouts", "too little light comes back, or too much",
                [&](Fields& inner) { describe(inner, effects.dropouts); });
   fields.group("mixed_pixels", "pixels that see two surfaces",

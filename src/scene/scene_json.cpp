@@ -127,8 +127,7 @@ Scanner read_scanner(const JsonPlace& place) {
   Scanner scanner;
   place.fields([&](Fields& fields) { describe(fields, scanner); });
   if (scanner.range_max <= scanner.range_min) place.at("range_max").fail("beyond range_min");
-  if (place.has("effects"))
-    place.at("effects").fields([&](Fields& fields) { describe(fields, scanner.effects); });
+  if (place.has("effects")) place.at("effects").fields([&](Fields& fields) { describe(fields, scanner.effects); });
   const Camera camera(scanner);
   const JsonPlace pose = place.at("pose");
   if (!pose.pose().isApprox(scanner.world_from_scanner(), kDistanceTolerance))

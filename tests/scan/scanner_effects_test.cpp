@@ -289,8 +289,8 @@ TEST(ScannerEffects, MixedPixelsLieBetweenTheSurfacesOfTheirFootprint) {
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0.0;
     std::size_t label_of_nearest = 0;
     for (const Eigen::Vector2d& at : {Eigen::Vector2d(0.5, 0.5), {0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
-      const auto traced = sphere_trace(
-          scene, camera.direction_in_world(static_cast<double>(i % 120) + at.x(), static_cast<double>(i / 120) + at.y()));
+      const auto traced = sphere_trace(scene, camera.direction_in_world(static_cast<double>(i % 120) + at.x(),
+                                                                        static_cast<double>(i / 120) + at.y()));
       if (!traced.found) continue;
       const double depth = scene.scanner.position.z() - traced.point.z();
       if (depth < nearest) label_of_nearest = traced.label;

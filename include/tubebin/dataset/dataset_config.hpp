@@ -18,7 +18,7 @@ const char* tool_version();
 struct OutputOptions {
   CloudFormat format = CloudFormat::pcd_binary;
   bool clean_cloud = false;  ///< the noise-free twin beside each cloud
-  bool preview = false;  ///< a rendered picture and the ground-truth image beside each cloud
+  bool preview = false;      ///< a rendered picture and the ground-truth image beside each cloud
 };
 
 struct DatasetConfig {

@@ -15,17 +15,17 @@ struct RangeNoise {
 
 /// Light from beside the camera: what it does not reach has no point.
 struct ProjectorOptions {
-  bool enabled = false;                ///< without one the light comes from the camera
-  Vec3 position = {0.15, 0.0, 0.0};    ///< metres, in the scanner's frame
-  double focus_distance = 2.0;         ///< metres: where its optical axis meets the camera's
-  double horizontal_fov_deg = 75.0;    ///< degrees
-  double vertical_fov_deg = 50.0;      ///< degrees
+  bool enabled = false;              ///< without one the light comes from the camera
+  Vec3 position = {0.15, 0.0, 0.0};  ///< metres, in the scanner's frame
+  double focus_distance = 2.0;       ///< metres: where its optical axis meets the camera's
+  double horizontal_fov_deg = 75.0;  ///< degrees
+  double vertical_fov_deg = 50.0;    ///< degrees
 };
 
 /// Too little light comes back, or too much.
 struct DropOuts {
-  double signal_min = 0.0;            ///< of what a white surface returns head-on at the reference distance; 0: off
-  double signal_spread = 0.0;         ///< standard deviation of the logarithm of a pixel's signal
+  double signal_min = 0.0;             ///< of what a white surface returns head-on at the reference distance; 0: off
+  double signal_spread = 0.0;          ///< standard deviation of the logarithm of a pixel's signal
   double tube_reflectivity_min = 1.0;  ///< each tube has its own, uniform in between
   double tube_reflectivity_max = 1.0;
   double bin_reflectivity = 1.0;
@@ -35,8 +35,8 @@ struct DropOuts {
 
 /// Where a pixel's footprint sees two surfaces, its depth is their mean and its label the nearer one's.
 struct MixedPixels {
-  double share = 0.0;       ///< of the pixels at edges; 0: off
-  double footprint = 1.0;   ///< pixels, side of the square that a pixel sees
+  double share = 0.0;        ///< of the pixels at edges; 0: off
+  double footprint = 1.0;    ///< pixels, side of the square that a pixel sees
   double edge_step = 0.005;  ///< metres of depth within the footprint that make an edge
 };
 
