@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <queue>
 
 #include "tubebin/modeling/surface_fitting.hpp"
-#include "tubebin/modeling/vote_voxels.hpp"
+#include "tubebin/modeling/vote_graph.hpp"
 
 namespace tubebin {
 namespace {
@@ -21,69 +20,22 @@ struct Vote {
   double arclength = 0.0;  ///< along the curve, metres
 };
 
-std::vector<double> geodesic_distances(const VoteVoxels& voxels, const std::vector<std::vector<std::uint32_t>>& linked,
-                                       std::uint32_t from) {
-  std::vector<double> distance(voxels.size(), std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, std::uint32_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  distance[from] = 0.0;
-  queue.emplace(0.0, from);
-  while (!queue.empty()) {
-    const auto [d, i] = queue.top();
-    queue.pop();
-    if (d > distance[i]) continue;
-    for (const std::uint32_t j : linked[i]) {
-      const double through = d + double((voxels.mean(i) - voxels.mean(j)).norm());
-      if (through >= distance[j]) continue;
-      distance[j] = through;
-      queue.emplace(through, j);
-    }
-  }
-  return distance;
-}
-
-/// The farthest reachable voxel.
-std::uint32_t farthest(const std::vector<double>& distance, std::uint32_t from) {
-  std::uint32_t best = from;
-  for (std::uint32_t i = 0; i < distance.size(); ++i)
-    if (std::isfinite(distance[i]) && distance[i] > distance[best]) best = i;
-  return best;
-}
-
-/// The voxel of most votes: on the line for sure, where any other may be a stray that nothing links to.
-std::uint32_t fullest(const VoteVoxels& voxels) {
-  std::uint32_t best = 0;
-  for (std::uint32_t i = 1; i < voxels.size(); ++i)
-    if (voxels.count(i) > voxels.count(best)) best = i;
-  return best;
-}
-
 /// Mean votes at equal geodesic distance from one end: the level sets' centres are a first skeleton (Verroust and
 /// Lazarus 2000, "Extracting skeletal curves from 3D scattered data").
-/// All votes, since some alone may leave gaps wider than a link.
-std::vector<Vec3> level_set_skeleton(const std::vector<Point>& centers, double radius) {
-  const double step = radius / 3.0;
-  const VoteVoxels voxels(centers, step, 1);
-  std::vector<std::vector<std::uint32_t>> linked(voxels.size());
-  for (const auto& [a, b] : voxels.links(radius / 2.0)) {
-    linked[a].push_back(b);
-    linked[b].push_back(a);
-  }
-  const std::uint32_t middle = fullest(voxels);
-  const std::uint32_t end = farthest(geodesic_distances(voxels, linked, middle), middle);
-  const std::vector<double> distance = geodesic_distances(voxels, linked, end);
-
+std::vector<Vec3> level_set_skeleton(const VoteGraph& graph, double step) {
+  const std::uint32_t end = graph.far_end();
+  const std::vector<double> distance = graph.distances_from({&end, 1});
   std::vector<Vec3> sums;
   std::vector<double> counts;
-  for (std::size_t i = 0; i < voxels.size(); ++i) {
+  for (std::size_t i = 0; i < graph.size(); ++i) {
     if (!std::isfinite(distance[i])) continue;
     const auto level = static_cast<std::size_t>(distance[i] / step);
     if (level >= sums.size()) {
       sums.resize(level + 1, Vec3::Zero());
       counts.resize(level + 1, 0.0);
     }
-    const auto weight = static_cast<double>(voxels.count(i));
-    sums[level] += weight * voxels.mean(i).cast<double>();
+    const auto weight = static_cast<double>(graph.count(i));
+    sums[level] += weight * graph.mean(i).cast<double>();
     counts[level] += weight;
   }
   std::vector<Vec3> skeleton;
@@ -224,16 +176,14 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Segmen
   constexpr std::size_t kVotes = 800;
   std::vector<Vote> votes;
   std::vector<SurfacePoint> surface, own;
-  std::vector<Point> centers;
   for (std::size_t k = 0; k < segment.size(); ++k) {
     const Vec3 p = cloud.points[segment[k]].cast<double>(), n = cloud.normals[segment[k]].cast<double>();
     own.push_back({p, n});
-    centers.push_back((p - radius * n).cast<float>());
     if (k % (segment.size() / kVotes + 1) != 0) continue;
     surface.push_back({p, n});
     votes.push_back({.point = p, .normal = n, .center = p - radius * n});
   }
-  std::vector<Vec3> curve = level_set_skeleton(centers, radius);
+  std::vector<Vec3> curve = level_set_skeleton(VoteGraph(cloud, segment, radius), radius / 3.0);
   if (curve.size() >= 3) curve = smooth(curve, votes, radius / 3.0, radius);
   if (curve.size() >= 3) curve = smooth(curve, votes, radius / 3.0, radius);
   curve = trim(curve, 1.5 * radius);

@@ -1,5 +1,6 @@
 #include "tubebin/modeling/centerline_pieces.hpp"
 
+#include "tubebin/modeling/branch_splitting.hpp"
 #include "tubebin/modeling/centerline_fitting.hpp"
 #include "tubebin/modeling/centerline_segmentation.hpp"
 #include "tubebin/modeling/flat_ends.hpp"
@@ -26,7 +27,8 @@ std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vecto
   const Vec3 viewpoint = projection.viewpoint().cast<double>();
   std::vector<TubePiece> pieces;
   for (const Segment& segment : segments)
-    if (auto piece = fit_centerline(cloud, segment, loose, radius, viewpoint)) pieces.push_back(std::move(*piece));
+    for (const Segment& stretch : split_branches(cloud, segment, radius))
+      if (auto piece = fit_centerline(cloud, stretch, loose, radius, viewpoint)) pieces.push_back(std::move(*piece));
   return pieces;
 }
 

@@ -1,0 +1,16 @@
+/// Segments that branch, taken apart into segments that do not.
+#pragma once
+
+#include <vector>
+
+#include "tubebin/modeling/filtering.hpp"
+#include "tubebin/modeling/tube_model.hpp"
+
+namespace tubebin {
+
+/// The votes of a branching tube hang together (segment_by_votes), and so may those of tubes that meet where normals
+/// mix. The longest way through a segment's votes is one stretch of tube; what lies off it and is long enough to be
+/// another stretch is a segment of its own, taken apart in the same way. A segment without branches stays as it is.
+std::vector<Segment> split_branches(const FilteredCloud& cloud, const Segment& segment, double radius);
+
+}  // namespace tubebin
