@@ -114,7 +114,7 @@ int model_one(const Arguments& arguments) {
   fmt::print("{} tubes of radius {:.2f} mm in {} points, {} of them without a tube; {:.1f} ms\n", result.tubes.size(),
              result.radius * 1e3, result.labels.size(), unlabeled, result.seconds.total() * 1e3);
   for (std::size_t k = 0; k < result.tubes.size(); ++k)
-    fmt::print("tube {}: {} cylinders, {:.3f} m, {} points\n", k + 1, result.tubes[k].nodes.size() - 1,
+    fmt::print("tube {}: {} cylinders, {:.3f} m, {} points\n", k + 1, result.tubes[k].cylinder_count(),
                result.tubes[k].length(),
                std::count(result.labels.begin(), result.labels.end(), static_cast<Label>(k + 1)));
   return static_cast<int>(ExitCode::done);

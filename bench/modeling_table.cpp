@@ -77,8 +77,9 @@ void compare_geometry(const CloudToModel& input, const ModelingResult& result, S
     return nearest;
   };
   for (const TubeModel& tube : result.tubes)
-    for (std::size_t k = 0; k + 1 < tube.nodes.size(); ++k)
-      if (!tube.bridged[k]) add_samples(tube.nodes[k], tube.nodes[k + 1], to_truth, score.to_truth);
+    for (const auto& [nodes, bridged] : tube.paths)
+      for (std::size_t k = 0; k + 1 < nodes.size(); ++k)
+        if (!bridged[k]) add_samples(nodes[k], nodes[k + 1], to_truth, score.to_truth);
   // The other way from where points say that the tube is in sight: each such point's foot on its true centreline.
   for (std::size_t k = 0; k < result.source.size(); k += 50) {
     const Label label = input.cloud.labels[result.source[k]];
@@ -93,7 +94,8 @@ void compare_geometry(const CloudToModel& input, const ModelingResult& result, S
       if ((p - a - t * (b - a)).norm() < nearest) nearest = (p - a - t * (b - a)).norm(), foot = a + t * (b - a);
     }
     double to_model = 1.0;
-    for (const TubeModel& found : result.tubes) to_model = std::min(to_model, distance_to_polyline(foot, found.nodes));
+    for (const TubeModel& found : result.tubes)
+      for (const TubePath& path : found.paths) to_model = std::min(to_model, distance_to_polyline(foot, path.nodes));
     score.to_model.push_back(to_model);
   }
 }

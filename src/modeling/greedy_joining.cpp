@@ -56,16 +56,17 @@ std::vector<Pair> pairs_by_cost(const std::vector<TubePiece>& pieces, const Gree
 
 /// Follows the joins from a free end to the other.
 TubeModel follow(const std::vector<TubePiece>& pieces, const std::vector<std::size_t>& partner, std::size_t end) {
-  TubeModel tube{.nodes = {}, .bridged = {}, .radius = pieces[end / 2].radius};
+  const double radius = pieces[end / 2].radius;
+  TubePath path;
   while (true) {
     auto nodes = pieces[end / 2].nodes;
     if (end % 2 == 1) std::reverse(nodes.begin(), nodes.end());
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-      if (!tube.nodes.empty()) tube.bridged.push_back(n == 0);
-      tube.nodes.push_back(nodes[n]);
+      if (!path.nodes.empty()) path.bridged.push_back(n == 0);
+      path.nodes.push_back(nodes[n]);
     }
     const std::size_t next = partner[end ^ 1U];
-    if (next == kFree) return tube;
+    if (next == kFree) return {.paths = {std::move(path)}, .radius = radius};
     end = next;
   }
 }

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <tuple>
 
+#include "tubebin/modeling/branch_joining.hpp"
+
 namespace tubebin {
 namespace {
 
@@ -152,7 +154,7 @@ std::vector<Pair> plausible_pairs(const std::vector<PieceEnd>& ends, const std::
   std::vector<Pair> pairs;
   for (std::uint32_t a = 0; a < ends.size(); ++a)
     for (std::uint32_t b = a + 1; b < ends.size(); ++b) {
-      if (a / 2 == b / 2) continue;
+      if (a / 2 == b / 2 || ends[a].is_on_side || ends[b].is_on_side) continue;
       const double gap = (ends[b].position - ends[a].position).norm();
       if (obstacles[a / 2].length + obstacles[b / 2].length + gap > length_limit) continue;
       const double cost = shape_cost(ends[a], ends[b], bending_rate, radius, density) +
@@ -200,6 +202,10 @@ std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, cons
         beyond.empty += e.empty / 3.0, beyond.hidden += e.hidden / 3.0, beyond.surface += e.surface / 3.0;
       }
       end.seen_free = beyond.empty;
+      end.is_on_side =
+          piece.length() > piece.radius && std::any_of(pieces.begin(), pieces.end(), [&](const auto& other) {
+            return &other != &piece && starts_on_side(tip, end.outward, other.nodes, piece.radius);
+          });
       end.hidden_reach = occlusion.hidden_reach(end.position, end.outward, reach_limit);
       ends.push_back(end);
     }

@@ -48,13 +48,17 @@ Json place(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z(
 
 Json tube_json(const TubeModel& tube, std::size_t label, Color color, std::size_t points) {
   Json cylinders = Json::array(), joints = Json::array();
-  for (std::size_t k = 0; k + 1 < tube.nodes.size(); ++k) {
-    cylinders.push_back({{"start", place(tube.nodes[k])},
-                         {"end", place(tube.nodes[k + 1])},
-                         {"radius", rounded(tube.radius)},
-                         {"length", rounded((tube.nodes[k + 1] - tube.nodes[k]).norm())},
-                         {"bridged", bool(tube.bridged[k])}});
-    if (k > 0) joints.push_back({{"position", place(tube.nodes[k])}, {"radius", rounded(tube.radius)}});
+  for (std::size_t p = 0; p < tube.paths.size(); ++p) {
+    const auto& [nodes, bridged] = tube.paths[p];
+    for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+      cylinders.push_back({{"path", p},
+                           {"start", place(nodes[k])},
+                           {"end", place(nodes[k + 1])},
+                           {"radius", rounded(tube.radius)},
+                           {"length", rounded((nodes[k + 1] - nodes[k]).norm())},
+                           {"bridged", bool(bridged[k])}});
+      if (k > 0) joints.push_back({{"position", place(nodes[k])}, {"radius", rounded(tube.radius)}});
+    }
   }
   return {{"label", label},
           {"color", fmt::format("#{:06x}", color)},

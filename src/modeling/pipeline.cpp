@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tubebin/core/error.hpp"
+#include "tubebin/modeling/branch_joining.hpp"
 #include "tubebin/modeling/centerline_fitting.hpp"
 #include "tubebin/modeling/centerline_pieces.hpp"
 #include "tubebin/modeling/centerline_segmentation.hpp"
@@ -69,11 +70,20 @@ double standard_deviation(const std::vector<NearestSurface>& nearest) {
   return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
+/// The nearest tube of each point, in `surface`.
 std::vector<NearestSurface> nearest_tubes(const FilteredCloud& cloud, const ModelingResult& result) {
   std::vector<TubeSurface> surfaces;
-  for (const TubeModel& tube : result.tubes) surfaces.push_back({tube.nodes, tube.radius});
+  std::vector<std::uint32_t> tube_of_surface;
+  for (std::uint32_t t = 0; t < result.tubes.size(); ++t)
+    for (const TubePath& path : result.tubes[t].paths) {
+      surfaces.push_back({path.nodes, result.tubes[t].radius});
+      tube_of_surface.push_back(t);
+    }
   // Half a radius: what a bridge's guessed course may be off; the nearest tube wins all the same.
-  return nearest_surfaces(cloud.points, surfaces, result.radius / 2.0);
+  auto nearest = nearest_surfaces(cloud.points, surfaces, result.radius / 2.0);
+  for (NearestSurface& n : nearest)
+    if (n.surface != NearestSurface::kNone) n.surface = tube_of_surface[n.surface];
+  return nearest;
 }
 
 /// Points about a tube lie on its surface; points that happen to be somewhere lie anywhere within reach, two fifths of
@@ -134,7 +144,8 @@ ModelingResult model_tubes(const ModelingInput& input, const ModelingOptions& op
     watch.lap(result.seconds.fitting);
     const OcclusionTest occlusion(input, projection, cloud.spacing * std::sqrt(options.filtering.ratio), result.radius);
     Joining joining = join_pieces(pieces, occlusion, options.tube_length);
-    result.tubes = std::move(joining.tubes);
+    result.tubes = joining.tubes_branch ? join_branches(std::move(joining.paths), result.radius, occlusion)
+                                        : unbranched(std::move(joining.paths), result.radius);
     result.tube_length = joining.tube_length;
     watch.lap(result.seconds.joining);
   } else if (result.radius > 0.0) {

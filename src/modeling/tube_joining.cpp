@@ -46,6 +46,7 @@ class Joiner {
     }
     bending_rate_ = estimate_bending_rate(pieces, radius_);
     ends_ = find_piece_ends(pieces, occlusion, 40.0 * radius_);
+    decide_whether_tubes_branch();
     joins_ = find_join_candidates(pieces, ends_, occlusion, bending_rate_, longest(), kJoinsPerEnd);
     joins_of_end_.resize(ends_.size());
     for (std::uint32_t j = 0; j < joins_.size(); ++j) {
@@ -122,6 +123,7 @@ class Joiner {
   /// Once the tubes' common length is known, joins that complete a tube are likelier and those that exceed it ruled
   /// out. Where no two tubes are in sight from end to end, the length of one may be confirmed by what it completes.
   void solve_with_common_length() {
+    if (tubes_branch_) return;  // chains are parts of them
     tube_length_ = common_length();
     if (tube_length_ > 0.0) return solve();
     const std::vector<double> seen = seen_lengths();
@@ -136,13 +138,10 @@ class Joiner {
   }
 
   Joining result() const {
-    Joining joining{
-        .tubes = {}, .tube_of_piece = std::vector<std::uint32_t>(pieces_.size()), .tube_length = tube_length_};
+    Joining joining{.paths = {}, .tube_length = tube_length_, .tubes_branch = tubes_branch_};
     for (const Chain& chain : chains_) {
-      if (chain.length < 2.0 * radius_) continue;
-      for (const std::uint32_t piece : chain.path.items)
-        joining.tube_of_piece[piece] = static_cast<std::uint32_t>(joining.tubes.size());
-      joining.tubes.push_back(to_model(chain));
+      const bool is_branch = ends_[chain.first_end].is_on_side || ends_[chain.last_end].is_on_side;
+      if (chain.length >= (is_branch ? 1.0 : 2.0) * radius_) joining.paths.push_back(path_of(chain));
     }
     return joining;
   }
@@ -265,6 +264,15 @@ class Joiner {
     chains_ = std::move(kept);
   }
 
+  /// Where tubes branch, every few pieces show it. An end on another's side is a misfit where it is one of many.
+  void decide_whether_tubes_branch() {
+    const auto pieces = std::count_if(pieces_.begin(), pieces_.end(), [](const auto& p) { return !is_fragment(p); });
+    const auto branches = std::count_if(ends_.begin(), ends_.end(), [](const PieceEnd& end) { return end.is_on_side; });
+    tubes_branch_ = branches >= 2 && 8 * branches >= pieces;
+    if (!tubes_branch_)
+      for (PieceEnd& end : ends_) end.is_on_side = false;
+  }
+
   /// Two bridges of different tubes cannot occupy one place.
   void find_colliding_joins() {
     collides_.resize(joins_.size());
@@ -290,21 +298,21 @@ class Joiner {
     return false;
   }
 
-  TubeModel to_model(const Chain& chain) const {
-    TubeModel tube{.nodes = {}, .bridged = {}, .radius = radius_};
+  TubePath path_of(const Chain& chain) const {
+    TubePath path;
     std::uint32_t entered = chain.first_end;
     for (std::size_t k = 0; k < chain.pieces.size(); ++k) {
       auto nodes = pieces_[chain.pieces[k]].nodes;
       if (entered % 2 == 1) std::reverse(nodes.begin(), nodes.end());
       for (std::size_t n = 0; n < nodes.size(); ++n) {
-        if (!tube.nodes.empty()) tube.bridged.push_back(n == 0);
-        tube.nodes.push_back(nodes[n]);
+        if (!path.nodes.empty()) path.bridged.push_back(n == 0);
+        path.nodes.push_back(nodes[n]);
       }
       if (k == chain.joins.size()) break;
       const JoinCandidate& join = joins_[chain.joins[k]];
       entered = join.end_a / 2 == chain.pieces[k + 1] ? join.end_a : join.end_b;
     }
-    return tube;
+    return path;
   }
 
   const std::vector<TubePiece>& pieces_;
@@ -314,6 +322,7 @@ class Joiner {
   std::vector<double> lengths_;
   std::vector<std::uint64_t> piece_keys_;
   std::vector<PieceEnd> ends_;
+  bool tubes_branch_ = false;
   std::vector<JoinCandidate> joins_;
   std::vector<double> bridge_lengths_;  ///< of the joins, metres
   std::vector<std::vector<std::uint32_t>> joins_of_end_;
@@ -326,7 +335,7 @@ class Joiner {
 }  // namespace
 
 Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length) {
-  if (pieces.empty()) return {.tubes = {}, .tube_of_piece = {}, .tube_length = tube_length};
+  if (pieces.empty()) return {.paths = {}, .tube_length = tube_length, .tubes_branch = false};
   Joiner joiner(pieces, occlusion, tube_length);
   joiner.solve();
   if (tube_length <= 0.0) joiner.solve_with_common_length();

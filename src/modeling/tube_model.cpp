@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tubebin {
 
@@ -12,17 +11,33 @@ double polyline_length(const std::vector<Vec3>& nodes) {
   return sum;
 }
 
-double distance_to_polyline(const Vec3& point, const std::vector<Vec3>& nodes) {
-  double nearest = std::numeric_limits<double>::infinity();
+Vec3 nearest_on_polyline(const Vec3& point, const std::vector<Vec3>& nodes) {
+  Vec3 nearest = nodes.front();
   for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
     const Vec3 axis = nodes[k + 1] - nodes[k];
     const double t = std::clamp((point - nodes[k]).dot(axis) / std::max(axis.squaredNorm(), 1e-18), 0.0, 1.0);
-    nearest = std::min(nearest, (point - nodes[k] - t * axis).squaredNorm());
+    const Vec3 foot = nodes[k] + t * axis;
+    if ((point - foot).squaredNorm() < (point - nearest).squaredNorm()) nearest = foot;
   }
-  return std::sqrt(nearest);
+  return nearest;
+}
+
+double distance_to_polyline(const Vec3& point, const std::vector<Vec3>& nodes) {
+  return (point - nearest_on_polyline(point, nodes)).norm();
 }
 
 double TubePiece::length() const { return polyline_length(nodes); }
-double TubeModel::length() const { return polyline_length(nodes); }
+
+double TubeModel::length() const {
+  double sum = 0.0;
+  for (const TubePath& path : paths) sum += polyline_length(path.nodes);
+  return sum;
+}
+
+std::size_t TubeModel::cylinder_count() const {
+  std::size_t count = 0;
+  for (const TubePath& path : paths) count += path.nodes.size() - 1;
+  return count;
+}
 
 }  // namespace tubebin

@@ -10,7 +10,8 @@ namespace {
 std::vector<Point> votes_of(const FilteredCloud& cloud, const Segment& segment, double radius) {
   std::vector<Point> votes;
   votes.reserve(segment.size());
-  for (const std::uint32_t i : segment) votes.push_back(cloud.points[i] - static_cast<float>(radius) * cloud.normals[i]);
+  for (const std::uint32_t i : segment)
+    votes.push_back(cloud.points[i] - static_cast<float>(radius) * cloud.normals[i]);
   return votes;
 }
 

@@ -74,7 +74,7 @@ inline double farthest_node(const TubeModel& model, const PlacedTube& tube) {
   std::vector<Vec3> nodes;
   for (int i = 0; i < static_cast<int>(tube.tube.nodes.size()); ++i) nodes.push_back(tube.node_in_world(i));
   double farthest = 0.0;
-  for (const Vec3& node : model.nodes) farthest = std::max(farthest, distance_to_polyline(node, nodes));
+  for (const Vec3& node : model.paths.front().nodes) farthest = std::max(farthest, distance_to_polyline(node, nodes));
   return farthest;
 }
 

@@ -111,7 +111,7 @@ TEST(Pipeline, BridgesWhatAnotherTubeHides) {
   ASSERT_EQ(result.tubes.size(), 2u);
   int bridged = 0;
   for (const TubeModel& tube : result.tubes)
-    bridged += static_cast<int>(std::count(tube.bridged.begin(), tube.bridged.end(), true) > 0);
+    bridged += static_cast<int>(std::count(tube.paths[0].bridged.begin(), tube.paths[0].bridged.end(), true) > 0);
   EXPECT_EQ(bridged, 1);
   for (const TubeModel& tube : result.tubes) {
     const double expected = std::abs(tube.length() - 0.44) < std::abs(tube.length() - 0.3) ? 0.44 : 0.3;
@@ -191,8 +191,8 @@ TEST(Pipeline, ARigidMotionOfTheInputMovesTheResultWithIt) {
     double nearest = 1.0;
     for (const TubeModel& other : b.tubes) {
       double farthest = 0.0;
-      for (const Vec3& node : tube.nodes)
-        farthest = std::max(farthest, distance_to_polyline(motion * node, other.nodes));
+      for (const Vec3& node : tube.paths[0].nodes)
+        farthest = std::max(farthest, distance_to_polyline(motion * node, other.paths[0].nodes));
       nearest = std::min(nearest, farthest);
     }
     EXPECT_LT(nearest, 0.001);

@@ -17,6 +17,7 @@ struct PieceEnd {
   Vec3 outward = Vec3::Zero();      ///< unit, along the last cylinder
   double direction_variance = 0.0;  ///< of `outward`, rad^2 an axis
   double seen_free = 0.0;           ///< part of the place just beyond it that the scanner saw to be empty
+  bool is_on_side = false;          ///< of another piece: a branch starts here
   double hidden_reach = 0.0;        ///< how far the tube could go on unseen, metres
 };
 

@@ -20,17 +20,27 @@ struct TubePiece {
   double length() const;
 };
 
-/// A tube: cylinders in a row, a joint between consecutive ones.
-struct TubeModel {
+/// Cylinders in a row, a joint between consecutive ones.
+struct TubePath {
   std::vector<Vec3> nodes;    ///< cylinder i reaches from nodes[i] to nodes[i + 1]; metres, world frame
   std::vector<bool> bridged;  ///< of cylinder i: it spans a stretch without points, from one piece to the next
-  double radius = 0.0;        ///< metres
+};
+
+/// A tube: one path, or, where it branches, a tree of them. A branch starts on the centreline of a path before it, or
+/// ends there.
+struct TubeModel {
+  std::vector<TubePath> paths;  ///< longest first
+  double radius = 0.0;          ///< metres
 
   double length() const;
+  std::size_t cylinder_count() const;
 };
 
 /// Sum of the distances of consecutive nodes, metres.
 double polyline_length(const std::vector<Vec3>& nodes);
+
+/// The place of a polyline that is nearest to a point.
+Vec3 nearest_on_polyline(const Vec3& point, const std::vector<Vec3>& nodes);
 
 /// Distance of a point to the nearest place of a polyline, metres.
 double distance_to_polyline(const Vec3& point, const std::vector<Vec3>& nodes);
