@@ -19,14 +19,12 @@ Tip tip_of(const TubePath& path, bool last) {
   return {tip, (tip - inner).normalized()};
 }
 
-/// The nearest place of the polyline that the way straight on from the tip comes nearer to than half a radius, within
+/// The first place of the polyline that the way straight on from the tip comes nearer to than half a radius, within
 /// `reach`.
 std::optional<Vec3> place_ahead(const Tip& tip, const std::vector<Vec3>& nodes, double radius, double reach) {
   for (double ahead = 0.0; ahead <= reach; ahead += radius / 8.0) {
     const Vec3 place = nearest_on_polyline(tip.position + ahead * tip.outward, nodes);
-    if ((tip.position + ahead * tip.outward - place).norm() > radius / 2.0) continue;
-    const bool is_end = (place - nodes.front()).norm() < radius || (place - nodes.back()).norm() < radius;
-    return is_end ? std::nullopt : std::optional(place);
+    if ((tip.position + ahead * tip.outward - place).norm() <= radius / 2.0) return place;
   }
   return std::nullopt;
 }
@@ -74,7 +72,9 @@ std::vector<Vec3> line_between(const Vec3& tip, const Vec3& place, double radius
 
 bool starts_on_side(const Vec3& tip, const Vec3& outward, const std::vector<Vec3>& nodes, double radius) {
   // Closer than nine tenths of a radius, to leave room for what fits are off.
-  return distance_to_polyline(tip, nodes) < 0.9 * radius && place_ahead({tip, outward}, nodes, radius, 1.5 * radius);
+  if (distance_to_polyline(tip, nodes) > 0.9 * radius) return false;
+  const std::optional<Vec3> place = place_ahead({tip, outward}, nodes, radius, 1.5 * radius);
+  return place && (*place - nodes.front()).norm() > radius && (*place - nodes.back()).norm() > radius;
 }
 
 std::vector<TubeModel> join_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion) {
