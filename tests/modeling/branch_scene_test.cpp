@@ -1,0 +1,84 @@
+// Tubes that branch: taken apart into stretches, and put together again.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "built_scene.hpp"
+#include "tubebin/modeling/branch_joining.hpp"
+#include "tubebin/modeling/branch_splitting.hpp"
+#include "tubebin/modeling/centerline_segmentation.hpp"
+#include "tubebin/modeling/filtering.hpp"
+#include "tubebin/scene/tubes_txt.hpp"
+
+namespace tubebin {
+namespace {
+
+/// A trunk of 0.36 m that lies along x at `y`, with two branches of 0.12 m in the plane of the floor.
+PlacedTube two_branches(double y) {
+  PlacedTube tube = tube_along({{-0.18, y, kRadius}, {-0.06, y, kRadius}, {0.06, y, kRadius}, {0.18, y, kRadius}});
+  for (const double x : {-0.06, 0.06}) {
+    tube.tube.nodes.push_back({x + 0.06, y + 0.10, kRadius});
+    tube.tube.cylinders.push_back({x < 0.0 ? 1 : 2, static_cast<int>(tube.tube.nodes.size()) - 1, 0});
+  }
+  return tube;
+}
+
+TEST(Branches, OneTubeIsFoundForEachTree) {
+  const Scene scene = scene_of({two_branches(-0.12), two_branches(0.04)});
+  const Cloud cloud = scan(scene).cloud;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
+  ASSERT_EQ(result.tubes.size(), 2u);
+  EXPECT_GE(micro_recall_of(result, cloud), 0.995);
+  for (const TubeModel& tube : result.tubes) {
+    EXPECT_EQ(tube.paths.size(), 3u);
+    EXPECT_NEAR(tube.length(), scene.tubes[0].tube.length(), 0.02);
+  }
+}
+
+TEST(Branches, ATrunkThatAnotherTubeHidesStillJoinsItsBranches) {
+  const Scene scene = scene_of({two_branches(0.0), two_branches(-0.15),
+                                tube_along({{-0.08, -0.02, 0.05}, {-0.04, 0.03, 0.05}, {0.12, 0.03, 0.05}})});
+  const Cloud cloud = scan(scene).cloud;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
+  EXPECT_EQ(result.tubes.size(), 3u);
+  EXPECT_GE(micro_recall_of(result, cloud), 0.99);
+}
+
+TEST(Branches, SegmentsOfTreesAreTakenApartAndThoseOfChainsAreNot) {
+  for (const bool is_tree : {true, false}) {
+    const Scene scene = scene_of(
+        {is_tree ? two_branches(0.0) : tube_along({{-0.1, 0, kRadius}, {0, 0, kRadius}, {0.1, 0.05, kRadius}})});
+    const Cloud cloud = scan(scene).cloud;
+    const ModelingInput input = input_of(cloud, scene.bin);
+    const FilteredCloud filtered = filter(input, view_of(input), {}, kRadius, 1);
+    const std::vector<Segment> segments = segment_by_votes(filtered, kRadius);
+    ASSERT_EQ(segments.size(), 1u);
+    const std::vector<Segment> stretches = split_branches(filtered, segments[0], kRadius);
+    EXPECT_EQ(stretches.size(), is_tree ? 3u : 1u);
+    std::size_t points = 0;
+    for (const Segment& stretch : stretches) points += stretch.size();
+    EXPECT_EQ(points, segments[0].size());
+  }
+}
+
+TEST(Branches, StartOnASideButNotAtAnEnd) {
+  const std::vector<Vec3> nodes = {{0, 0, 0}, {0.2, 0, 0}};
+  EXPECT_TRUE(starts_on_side({0.1, 0.6 * kRadius, 0}, {0, -1, 0}, nodes, kRadius));
+  EXPECT_FALSE(starts_on_side({0.1, 1.1 * kRadius, 0}, {0, -1, 0}, nodes, kRadius));  // another tube's end may touch it
+  EXPECT_FALSE(starts_on_side({0.1, 0.8 * kRadius, 0}, {0, 1, 0}, nodes, kRadius));   // leads away
+  EXPECT_FALSE(starts_on_side({0.195, 0.4 * kRadius, 0}, {0, -1, 0}, nodes, kRadius));
+}
+
+TEST(Branches, PublishedSetC) {
+  const std::string path = PUBLISHED_SCENES_DIR "/C5_1.txt";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs the published scenes in " PUBLISHED_SCENES_DIR;
+  Scene scene = scene_of(read_tubes_txt(path));
+  scene.bin = {.length = 0.80, .width = 0.60, .height = 0.20, .wall_thickness = 0.02};
+  const Cloud cloud = scan(scene).cloud;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
+  EXPECT_LE(result.tubes.size(), 6u);  // a joint of three paths is hidden
+  EXPECT_GE(micro_recall_of(result, cloud), 0.95);
+}
+
+}  // namespace
+}  // namespace tubebin
