@@ -78,6 +78,14 @@ std::optional<Touch> touch_pieces(const Piece& first, const Piece& second, const
   return touch_balls(first.axis.at(closest.s), first.radius, second.axis.at(closest.t), second.radius, depth_min);
 }
 
+/// How far a place lies beyond a flat end of the piece, along its direction: negative before its start.
+double beyond_flat_ends(const Piece& piece, const Vec3& position) {
+  const double along = (position - piece.axis.a).dot(piece.direction);
+  if (piece.flat_a && along < 0.0) return along;
+  if (piece.flat_b && along > piece.length) return along - piece.length;
+  return 0.0;
+}
+
 /// Nearly parallel pieces: touches at both ends of the stretch where they run side by side.
 void add_line_touches(const Piece& first, const Piece& second, double depth_min, std::vector<Touch>& out) {
   double from = (second.axis.a - first.axis.a).dot(first.direction);
@@ -89,9 +97,13 @@ void add_line_touches(const Piece& first, const Piece& second, double depth_min,
   for (const double along : {from, to}) {
     const Vec3 on_first = first.axis.a + along * first.direction;
     const double t = std::clamp((on_first - second.axis.a).dot(second.direction) / second.length, 0.0, 1.0);
-    const auto touch = touch_balls(on_first, first.radius, second.axis.at(t), second.radius, depth_min);
+    auto touch = touch_balls(on_first, first.radius, second.axis.at(t), second.radius, depth_min);
     // Deeper than they run side by side, they meet end to end instead.
-    if (touch && touch->depth < to - from) out.push_back(*touch);
+    if (!touch || touch->depth >= to - from) continue;
+    // The balls of a slanting pair reach up to 0.15 radii beyond a flat end, where nothing is.
+    for (const Piece* piece : {&first, &second})
+      touch->position -= beyond_flat_ends(*piece, touch->position) * piece->direction;
+    if (std::abs(beyond_flat_ends(first, touch->position)) < 0.01 * first.radius) out.push_back(*touch);
   }
 }
 

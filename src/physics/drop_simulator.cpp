@@ -39,6 +39,8 @@ class SolverEffort {
   void boost() {
     boost_ = std::min(kSolverBoost * boost_, kSolverBoostMax);
     world_.set_solver_iterations(static_cast<int>(std::lround(boost_ * options_.solver_iterations)));
+    // What rolls on and on may do so on the share of the last step's forces: friction and rolling resistance lag.
+    if (boost_ == kSolverBoostMax) world_.stop_warm_starts();
   }
   void boost_if_late(int step) {
     if (step > steps_in(options_.solver_patience, options_) && step % steps_in(kBoostInterval, options_) == 0) boost();

@@ -186,6 +186,8 @@ RigidWorld::~RigidWorld() {
   dWorldDestroy(impl_->world);
 }
 
+void RigidWorld::stop_warm_starts() { impl_->options.warm_start = 0.0; }
+
 void RigidWorld::set_solver_iterations(int iterations) { dWorldSetQuickStepNumIterations(impl_->world, iterations); }
 
 void RigidWorld::step() {

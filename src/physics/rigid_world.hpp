@@ -18,6 +18,8 @@ class RigidWorld {
 
   /// In place of options.solver_iterations.
   void set_solver_iterations(int iterations);
+  /// From now on contacts start from no forces.
+  void stop_warm_starts();
   /// One step of options.time_step.
   void step();
 

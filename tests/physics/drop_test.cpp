@@ -124,6 +124,17 @@ TEST(Drop, LeavesTubesAtRestTouchingAndHardlyInterpenetrating) {
   EXPECT_LT(largest_movement(result.tubes, world.tubes()), 2.0 * options.drift_max);
 }
 
+TEST(Drop, ShortTubesComeToRestToo) {
+  Random random(3);
+  TubeOptions options;
+  options.length = 0.1;
+  options.cylinder_count_min = 2;
+  options.cylinder_count_max = 3;
+  const Bin bin{.length = 2.0, .width = 1.5};
+  const DropResult drop = drop_tubes(generate_tubes(20, options, random), bin, PhysicsOptions{}, 1);
+  EXPECT_EQ(drop.failure, DropFailure::none) << drop.detail;
+}
+
 TEST(Drop, TheSeedDecidesWhateverRanBefore) {
   Random random(22);
   const std::vector<Tube> tubes = generate_tubes(4, {}, random);
