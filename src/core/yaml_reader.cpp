@@ -109,6 +109,22 @@ class Reader : public Fields {
     inner.reject_unknown_keys();
   }
 
+  void list(const char* key, const char*, std::size_t, const std::function<void(std::size_t)>& resize,
+            const std::function<void(Fields&, std::size_t)>& describe_element) override {
+    const YAML::Node found = find(key);
+    if (!found) return;
+    if (!found.IsSequence() || found.size() == 0) fail(found, path(key), dump(found), "a list of mappings");
+    resize(found.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const std::string element_path = fmt::format("{}[{}]", path(key), i);
+      places_.set(element_path, place_of(file_, found[i].Mark()));
+      if (!found[i].IsMap()) fail(found[i], element_path, dump(found[i]), "a mapping of keys to values");
+      Reader inner(found[i], file_, element_path, places_);
+      describe_element(inner, i);
+      inner.reject_unknown_keys();
+    }
+  }
+
   void accept(const char* key) { known_.insert(key); }
 
   void reject_unknown_keys() const {

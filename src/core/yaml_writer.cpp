@@ -63,21 +63,35 @@ class TextFields : public Fields {
 class YamlText : public TextFields {
  public:
   void group(const char* key, const char* doc, const std::function<void(Fields&)>& describe_inner) override {
-    out_ << indent_ << key << ":  # " << doc << '\n';
+    begin(key, doc);
     indent_ += "  ";
     describe_inner(*this);
     indent_.resize(indent_.size() - 2);
   }
-  std::string str() const { return out_.str(); }
+  void list(const char* key, const char* doc, std::size_t size, const std::function<void(std::size_t)>&,
+            const std::function<void(Fields&, std::size_t)>& describe_element) override {
+    if (size == 0) return;
+    begin(key, doc);
+    indent_ += "    ";
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::size_t dash = out_.size() + indent_.size() - 2;
+      describe_element(*this, i);
+      out_[dash] = '-';
+    }
+    indent_.resize(indent_.size() - 4);
+  }
+  const std::string& str() const { return out_; }
 
  protected:
   void entry(const std::string& key, const std::string& value, const std::string& unit, const std::string&,
              const std::string& doc) override {
-    out_ << indent_ << key << ": " << value << "  # " << (unit.empty() ? "" : unit + "; ") << doc << '\n';
+    out_ += fmt::format("{}{}: {}  # {}{}\n", indent_, key, value, unit.empty() ? "" : unit + "; ", doc);
   }
 
  private:
-  std::ostringstream out_;
+  void begin(const char* key, const char* doc) { out_ += fmt::format("{}{}:  # {}\n", indent_, key, doc); }
+
+  std::string out_;
   std::string indent_;
 };
 
@@ -88,6 +102,10 @@ class MarkdownTable : public TextFields {
     prefix_ += std::string(key) + ".";
     describe_inner(*this);
     prefix_ = outer;
+  }
+  void list(const char* key, const char*, std::size_t size, const std::function<void(std::size_t)>&,
+            const std::function<void(Fields&, std::size_t)>& describe_element) override {
+    group((std::string(key) + "[]").c_str(), "", [&](Fields& fields) { describe_element(fields, size); });
   }
   std::string str() const {
     return "| key | default | unit | valid | effect |\n| --- | --- | --- | --- | --- |\n" + out_.str();
@@ -112,12 +130,17 @@ class KeyValueList : public TextFields {
     describe_inner(*this);
     prefix_ = outer;
   }
-  std::vector<KeyValue> list;
+  void list(const char* key, const char*, std::size_t size, const std::function<void(std::size_t)>&,
+            const std::function<void(Fields&, std::size_t)>& describe_element) override {
+    for (std::size_t i = 0; i < size; ++i)
+      group(fmt::format("{}[{}]", key, i).c_str(), "", [&](Fields& fields) { describe_element(fields, i); });
+  }
+  std::vector<KeyValue> values;
 
  protected:
   void entry(const std::string& key, const std::string& value, const std::string&, const std::string&,
              const std::string&) override {
-    list.push_back({prefix_ + key, value});
+    values.push_back({prefix_ + key, value});
   }
 
  private:
@@ -135,7 +158,7 @@ std::string write_yaml(const std::function<void(Fields&)>& describe) {
 std::vector<KeyValue> list_fields(const std::function<void(Fields&)>& describe) {
   KeyValueList fields;
   describe(fields);
-  return fields.list;
+  return fields.values;
 }
 
 std::string document_fields(const std::function<void(Fields&)>& describe) {

@@ -68,8 +68,10 @@ void describe(Fields& fields, DatasetConfig& config) {
   fields.number("attempt_time_limit", config.attempt_time_limit, {0.1, 86400.0}, "s",
                 "wall-clock time after which an attempt counts as failed; far above what any attempt needs, since "
                 "hitting it depends on the machine");
-  fields.group("tube", "shape of the tubes (paper, Algorithms 1 to 3)",
-               [&](Fields& inner) { describe(inner, config.tube); });
+  fields.list("kinds", config.kinds, "several kinds of tubes at once, instead of `tube`");
+  if (config.kinds.empty())
+    fields.group("tube", "shape of the tubes (paper, Algorithms 1 to 3)",
+                 [&](Fields& inner) { describe(inner, config.tube); });
   fields.group("bin", "inner size of the bin", [&](Fields& inner) { describe(inner, config.bin); });
   fields.group("physics", "the drop and the checks of its result",
                [&](Fields& inner) { describe(inner, config.physics); });
@@ -98,7 +100,8 @@ void check(const DatasetConfig& config, const KeyPlaces& places) {
   check_set_name(config, places);
   check_tubes_once(config, places);
   check_preview(config, places);
-  check(config.tube, places, "tube");
+  if (config.kinds.empty()) check(config.tube, places, "tube");
+  check(config.kinds, config.tubes, places);
   check(config.physics, places, "physics");
   check(config.scanner, places, "scanner");
 }
@@ -115,6 +118,31 @@ std::string format_config(const DatasetConfig& config) {
   return write_yaml(fields_of(fields));
 }
 
+namespace {
+
+/// The keys that each shape has in place of the chain's.
+std::string document_shapes() {
+  std::string text =
+      "\n## Shapes\n\n"
+      "The tables above have the keys of `shape: chain`. Other shapes have the keys below instead of `length` to\n"
+      "`bend_angle_max_deg`; a key of another shape is an error. [shapes.md](shapes.md) says how each is made.\n\n"
+      "`kinds` makes several kinds of tubes at once. It stands instead of `tube`, and each of its elements has the keys\n"
+      "of `tube` beside `count` and `share`.\n";
+  for (const std::string& name : shape_names()) {
+    TubeOptions options;
+    options.shape = ShapeChoice(name);
+    const auto describe_own = [&](Fields& fields) {
+      fields.group("tube", "", [&](Fields& inner) { options.shape->describe(inner, options); });
+    };
+    if (name == ShapeChoice().name()) continue;
+    text += fmt::format("\n### {}\n\n", name);
+    text += list_fields(describe_own).empty() ? "No keys of its own.\n" : document_fields(describe_own);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string document_config() {
   DatasetConfig defaults;
   return "# Configuration of generate_dataset\n\n"
@@ -123,18 +151,28 @@ std::string document_config() {
          "`include: other.yaml` (a path relative to the file) takes all values of that file first. A dot in a name\n"
          "below stands for nesting: `tube.radius` is the key `radius` in the mapping `tube`.\n\n"
          "`generate_dataset --config-reference` prints this page.\n\n" +
-         document_fields(fields_of(defaults));
+         document_fields(fields_of(defaults)) + document_shapes();
 }
 
 std::vector<std::string> differences(const DatasetConfig& there, const DatasetConfig& here) {
+  constexpr auto kNothing = "nothing";
   DatasetConfig there_fields = there;
   DatasetConfig here_fields = here;
   const std::vector<KeyValue> a = list_fields(fields_of(there_fields));
   const std::vector<KeyValue> b = list_fields(fields_of(here_fields));
   std::vector<std::string> differing;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    if (a[i].value != b[i].value && !kKeysOfExtent.contains(a[i].key_path))
-      differing.push_back(fmt::format("{}: {} there, {} here", a[i].key_path, a[i].value, b[i].value));
+  const auto value_in = [](const std::vector<KeyValue>& fields, const std::string& key) -> std::string {
+    const auto found = std::ranges::find(fields, key, &KeyValue::key_path);
+    return found == fields.end() ? kNothing : found->value;
+  };
+  const auto compare = [&](const std::string& key, const std::string& value_there, const std::string& value_here) {
+    if (value_there != value_here && !kKeysOfExtent.contains(key))
+      differing.push_back(fmt::format("{}: {} there, {} here", key, value_there, value_here));
+  };
+  for (const auto& [key, value] : a) compare(key, value, value_in(b, key));
+  // Shapes have keys of their own, and lists may be longer.
+  for (const auto& [key, value] : b)
+    if (value_in(a, key) == kNothing) compare(key, kNothing, value);
   return differing;
 }
 

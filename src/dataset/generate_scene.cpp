@@ -59,7 +59,8 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
   StageClock clock(result.seconds);
   Random random(attempt_seed(config, id, attempt));
 
-  const std::vector<Tube> tubes = generate_tubes(id.tubes, config.tube, random);
+  const std::vector<Tube> tubes = config.kinds.empty() ? generate_tubes(id.tubes, config.tube, random)
+                                                       : generate_mixed_tubes(id.tubes, config.kinds, random);
   clock.end_stage("build");
 
   DropResult drop = drop_tubes(tubes, config.bin, config.physics, random.bits());

@@ -16,7 +16,9 @@ double distance_from_bounds(const Vector& beyond) {
 
 }  // namespace
 
-BodySurface::BodySurface(const PlacedTube& placed) : radius_(placed.tube.radius) {
+BodySurface::BodySurface(const PlacedTube& placed)
+    : radius_(placed.tube.radius),
+      bore_radius_(placed.tube.wall_thickness > 0.0 ? placed.tube.radius - placed.tube.wall_thickness : 0.0) {
   for (const Cylinder& cylinder : placed.tube.cylinders) {
     const Vec3 a = placed.node_in_world(cylinder.node_a);
     const Vec3 b = placed.node_in_world(cylinder.node_b);
@@ -33,10 +35,16 @@ double BodySurface::distance(const Vec3& point) const {
     const Vec3 from_center = point - cylinder.center;
     const double along = from_center.dot(cylinder.axis);
     const double radial = (from_center - along * cylinder.axis).norm();
-    nearest = std::min(nearest,
-                       distance_from_bounds(Eigen::Vector2d(radial - radius_, std::abs(along) - cylinder.half_length)));
+    // A pipe's section is a rectangle from bore to outside; without a bore only its outer side counts.
+    const double middle = bore_radius_ > 0.0 ? (radius_ + bore_radius_) / 2.0 : 0.0;
+    nearest = std::min(nearest, distance_from_bounds(Eigen::Vector2d(std::abs(radial - middle) - (radius_ - middle),
+                                                                     std::abs(along) - cylinder.half_length)));
   }
-  for (const Vec3& center : sphere_centers_) nearest = std::min(nearest, std::abs((point - center).norm() - radius_));
+  for (const Vec3& center : sphere_centers_) {
+    const double from_center = (point - center).norm();
+    nearest = std::min(nearest, std::abs(from_center - radius_));
+    if (bore_radius_ > 0.0) nearest = std::min(nearest, std::abs(from_center - bore_radius_));
+  }
   for (const Box& box : boxes_)
     nearest = std::min(nearest, distance_from_bounds(Vec3((point - box.center()).cwiseAbs() - box.sizes() / 2.0)));
   return nearest;

@@ -8,7 +8,7 @@
 
 namespace tubebin {
 
-/// The surfaces of one body: a tube's cylinders and joint spheres, or the bin's boxes.
+/// The surfaces of one body: a tube's cylinders and joint spheres, outside and in its bore, or the bin's boxes.
 class BodySurface {
  public:
   explicit BodySurface(const PlacedTube& tube);
@@ -24,6 +24,7 @@ class BodySurface {
     double half_length = 0.0;
   };
   double radius_ = 0.0;
+  double bore_radius_ = 0.0;  ///< 0: solid
   std::vector<CappedCylinder> cylinders_;
   std::vector<Vec3> sphere_centers_;
   std::vector<Box> boxes_;

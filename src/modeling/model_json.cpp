@@ -29,6 +29,15 @@ class JsonFields : public Fields {
     describe_inner(inner);
     json_[key] = inner.json_;
   }
+  void list(const char* key, const char*, std::size_t size, const std::function<void(std::size_t)>&,
+            const std::function<void(Fields&, std::size_t)>& describe_element) override {
+    json_[key] = Json::array();
+    for (std::size_t i = 0; i < size; ++i) {
+      JsonFields inner;
+      describe_element(inner, i);
+      json_[key].push_back(inner.json_);
+    }
+  }
   const Json& json() const { return json_; }
 
  private:

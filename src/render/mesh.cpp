@@ -12,27 +12,49 @@ class MeshBuilder {
       : mesh_(mesh), origin_(origin), fineness_(fineness) {}
 
   void add_cylinder(const Vec3& base, const Vec3& top, double radius) {
-    const Vec3 axis = (top - base).normalized();
-    const Vec3 u = axis.unitOrthogonal();
-    const Vec3 v = axis.cross(u);
-    const auto outward = [&](int facet) -> Vec3 {
-      const double angle = 2.0 * std::numbers::pi * facet / fineness_.facets;
-      return std::cos(angle) * u + std::sin(angle) * v;
-    };
-    const int steps = steps_over((top - base).norm());
+    const Rim rim(base, top, fineness_.facets);
+    add_side(base, top, radius, rim);
+    add_disc(base, -rim.axis, 0.0, radius, rim);
+    add_disc(top, rim.axis, 0.0, radius, rim);
+  }
+
+  /// One cylinder of a hollow tube: outside, bore, and a ring of wall at each free end. `at_base` and `at_top` are the
+  /// directions in which other cylinders leave its ends.
+  void add_pipe(const Vec3& base, const Vec3& top, double radius, double bore_radius, const std::vector<Vec3>& at_base,
+                const std::vector<Vec3>& at_top) {
+    const Rim rim(base, top, fineness_.facets);
+    add_side(base, top, radius, rim);
+    if (at_base.empty()) add_disc(base, -rim.axis, bore_radius, radius, rim);
+    if (at_top.empty()) add_disc(top, rim.axis, bore_radius, radius, rim);
+    const double length = (top - base).norm();
+    const int steps = steps_over(length);
     add_patch(fineness_.facets, steps, [&](int facet, int step) -> Vertex {
-      return vertex(base + (top - base) * step / steps + radius * outward(facet), outward(facet));
+      const Vec3 offset = bore_radius * rim.outward(facet);
+      const double from = std::min(mitre(offset, rim.axis, at_base), length);
+      const double to = std::max(length - mitre(offset, -rim.axis, at_top), from);
+      return vertex(base + offset + rim.axis * (from + (to - from) * step / steps), -rim.outward(facet));
     });
-    add_cap(base, -axis, radius, outward);
-    add_cap(top, axis, radius, outward);
+  }
+
+  /// The part of a joint's inner sphere that lies in no bore; `arms` are the directions of the joint's cylinders.
+  void add_bore_joint(const Vec3& center, double radius, const std::vector<Vec3>& arms) {
+    const auto is_wall = [&](const Vertex& vertex) {
+      return std::ranges::all_of(arms, [&](const Vec3& arm) { return arm.dot(vertex.normal.cast<double>()) >= 0.0; });
+    };
+    const int rings = std::max(fineness_.facets / 2, 2);
+    add_patch(
+        fineness_.facets, rings,
+        [&](int facet, int ring) -> Vertex {
+          const Vec3 outward = on_unit_sphere(facet, ring, rings);
+          return vertex(center + radius * outward, -outward);
+        },
+        is_wall);
   }
 
   void add_sphere(const Vec3& center, double radius) {
     const int rings = std::max(fineness_.facets / 2, 2);
     add_patch(fineness_.facets, rings, [&](int facet, int ring) -> Vertex {
-      const double longitude = 2.0 * std::numbers::pi * facet / fineness_.facets;
-      const double polar = std::numbers::pi * ring / rings;
-      const Vec3 normal(std::sin(polar) * std::cos(longitude), std::sin(polar) * std::sin(longitude), std::cos(polar));
+      const Vec3 normal = on_unit_sphere(facet, ring, rings);
       return vertex(center + radius * normal, normal);
     });
   }
@@ -53,6 +75,51 @@ class MeshBuilder {
   }
 
  private:
+  /// A cylinder's cross-section.
+  struct Rim {
+    Rim(const Vec3& base, const Vec3& top, int facet_count)
+        : axis((top - base).normalized()), u(axis.unitOrthogonal()), v(axis.cross(u)), facets(facet_count) {}
+
+    Vec3 outward(int facet) const {
+      const double angle = 2.0 * std::numbers::pi * facet / facets;
+      return std::cos(angle) * u + std::sin(angle) * v;
+    }
+
+    Vec3 axis, u, v;
+    int facets;
+  };
+
+  Vec3 on_unit_sphere(int facet, int ring, int rings) const {
+    const double longitude = 2.0 * std::numbers::pi * facet / fineness_.facets;
+    const double polar = std::numbers::pi * ring / rings;
+    return {std::sin(polar) * std::cos(longitude), std::sin(polar) * std::sin(longitude), std::cos(polar)};
+  }
+
+  /// Where a line of the bore's side leaves its neighbours' bores: equal cylinders meet in the plane that bisects their
+  /// axes. `axis` points into the cylinder.
+  static double mitre(const Vec3& offset, const Vec3& axis, const std::vector<Vec3>& neighbours) {
+    double start = 0.0;
+    for (const Vec3& direction : neighbours) {
+      const double spread = 1.0 - direction.dot(axis);
+      if (spread > 1e-9) start = std::max(start, direction.dot(offset) / spread);
+    }
+    return start;
+  }
+
+  void add_side(const Vec3& base, const Vec3& top, double radius, const Rim& rim) {
+    const int steps = steps_over((top - base).norm());
+    add_patch(fineness_.facets, steps, [&](int facet, int step) -> Vertex {
+      return vertex(base + (top - base) * step / steps + radius * rim.outward(facet), rim.outward(facet));
+    });
+  }
+
+  /// A flat ring, or a whole disc where the inner radius is 0.
+  void add_disc(const Vec3& center, const Vec3& normal, double inner_radius, double radius, const Rim& rim) {
+    add_patch(fineness_.facets, 1, [&](int facet, int outer) -> Vertex {
+      return vertex(center + (outer ? radius : inner_radius) * rim.outward(facet), normal);
+    });
+  }
+
   std::uint32_t next_index() const { return static_cast<std::uint32_t>(mesh_.vertices.size()); }
 
   Vertex vertex(const Vec3& position, const Vec3& normal) const {
@@ -64,34 +131,28 @@ class MeshBuilder {
     return static_cast<int>(std::clamp(std::ceil(length / fineness_.cell), 1.0, kMostSteps));
   }
 
-  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    mesh_.indices.insert(mesh_.indices.end(), {a, b, c});
-  }
-
-  /// columns x rows quads over vertices vertex_at(0..columns, 0..rows).
-  template <typename VertexAt>
-  void add_patch(int columns, int rows, const VertexAt& vertex_at) {
+  /// columns x rows quads over vertices vertex_at(0..columns, 0..rows); a triangle stays where
+  /// `is_kept` says so of its first one.
+  template <typename VertexAt, typename IsKept>
+  void add_patch(int columns, int rows, const VertexAt& vertex_at, const IsKept& is_kept) {
     const std::uint32_t first = next_index();
     for (int column = 0; column <= columns; ++column)
       for (int row = 0; row <= rows; ++row) mesh_.vertices.push_back(vertex_at(column, row));
+    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      if (is_kept(mesh_.vertices[a])) mesh_.indices.insert(mesh_.indices.end(), {a, b, c});
+    };
     for (int column = 0; column < columns; ++column) {
       for (int row = 0; row < rows; ++row) {
         const std::uint32_t here = first + static_cast<std::uint32_t>(column * (rows + 1) + row);
         const std::uint32_t beside = here + static_cast<std::uint32_t>(rows) + 1;
-        add_triangle(here, beside, here + 1);
-        add_triangle(here + 1, beside, beside + 1);
+        add(here, beside, here + 1);
+        add(here + 1, beside, beside + 1);
       }
     }
   }
-
-  template <typename Outward>
-  void add_cap(const Vec3& center, const Vec3& normal, double radius, const Outward& outward) {
-    const std::uint32_t middle = next_index();
-    mesh_.vertices.push_back(vertex(center, normal));
-    for (int facet = 0; facet <= fineness_.facets; ++facet)
-      mesh_.vertices.push_back(vertex(center + radius * outward(facet), normal));
-    for (std::uint32_t facet = 1; facet <= static_cast<std::uint32_t>(fineness_.facets); ++facet)
-      add_triangle(middle, middle + facet, middle + facet + 1);
+  template <typename VertexAt>
+  void add_patch(int columns, int rows, const VertexAt& vertex_at) {
+    add_patch(columns, rows, vertex_at, [](const Vertex&) { return true; });
   }
 
   Mesh& mesh_;
@@ -101,15 +162,46 @@ class MeshBuilder {
 
 }  // namespace
 
+namespace {
+
+/// In world axes.
+std::vector<Vec3> arms_in_world(const PlacedTube& placed, int node, std::size_t except = static_cast<std::size_t>(-1)) {
+  std::vector<Vec3> arms = placed.tube.directions_from(node, except);
+  for (Vec3& arm : arms) arm = placed.world_from_tube.linear() * arm;
+  return arms;
+}
+
+void add_pipes(const PlacedTube& placed, MeshBuilder& builder) {
+  const Tube& tube = placed.tube;
+  const double bore_radius = tube.radius - tube.wall_thickness;
+  for (std::size_t i = 0; i < tube.cylinders.size(); ++i) {
+    const Cylinder& cylinder = tube.cylinders[i];
+    builder.add_pipe(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b), tube.radius,
+                     bore_radius, arms_in_world(placed, cylinder.node_a, i), arms_in_world(placed, cylinder.node_b, i));
+  }
+  for (int node = 0; node < static_cast<int>(tube.nodes.size()); ++node) {
+    const std::vector<Vec3> arms = arms_in_world(placed, node);
+    if (arms.size() > 1) builder.add_bore_joint(placed.node_in_world(node), bore_radius, arms);
+  }
+}
+
+void add_solid_cylinders(const PlacedTube& placed, MeshBuilder& builder) {
+  for (const Cylinder& cylinder : placed.tube.cylinders)
+    builder.add_cylinder(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b),
+                         placed.tube.radius);
+}
+
+}  // namespace
+
 Mesh tube_mesh(const PlacedTube& placed, const Vec3& origin, const Fineness& fineness) {
   Mesh mesh;
   MeshBuilder builder(mesh, origin, fineness);
-  const Tube& tube = placed.tube;
-  for (const Cylinder& cylinder : tube.cylinders)
-    builder.add_cylinder(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b), tube.radius);
-  const std::vector<int> degrees = tube.node_degrees();
+  const std::vector<int> degrees = placed.tube.node_degrees();
+  const bool is_open = placed.tube.wall_thickness > 0.0 && std::ranges::find(degrees, 1) != degrees.end();
+  is_open ? add_pipes(placed, builder) : add_solid_cylinders(placed, builder);
   for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
-    if (degrees[static_cast<std::size_t>(node)] != 1) builder.add_sphere(placed.node_in_world(node), tube.radius);
+    if (degrees[static_cast<std::size_t>(node)] != 1)
+      builder.add_sphere(placed.node_in_world(node), placed.tube.radius);
   return mesh;
 }
 

@@ -28,7 +28,7 @@ struct Fineness {
   double cell = std::numeric_limits<double>::infinity();  ///< metres, largest step along flat and straight surfaces
 };
 
-/// Cylinders with flat caps and spheres at the joints, around `origin` in world axes.
+/// Cylinders with flat caps and spheres at the joints, around `origin` in world axes. A hollow tube's free ends are open.
 Mesh tube_mesh(const PlacedTube& tube, const Vec3& origin, const Fineness& fineness);
 
 /// A box's faces, around `origin` in world axes.

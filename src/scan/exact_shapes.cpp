@@ -34,17 +34,17 @@ SolidCylinder::SolidCylinder(const Vec3& base, const Vec3& top, double radius)
 // The ray's distance from the axis decides hit or miss without cancellation: with n = direction x axis it is
 // |direction . moment| / |n|. Within the plane across the axis the ray's nearest point is at t = (direction .
 // foot) / |n|^2, and half the chord is sqrt(radius^2 - distance^2) / |n|.
-Interval SolidCylinder::intersect(const Vec3& direction) const {
+Interval SolidCylinder::intersect(const Vec3& direction, double radius) const {
   const double across_squared = direction.cross(axis_).squaredNorm();
   const double distance_across = direction.dot(moment_);
-  const double chord = radius_ * radius_ * across_squared - distance_across * distance_across;
+  const double chord = radius * radius * across_squared - distance_across * distance_across;
   if (chord < 0.0) return {};
   Interval side = kWholeLine;
   if (across_squared > 0.0) {
     const double nearest = direction.dot(foot_);
     const double half = std::sqrt(chord);
     side = {(nearest - half) / across_squared, (nearest + half) / across_squared};
-  } else if (foot_.squaredNorm() > radius_ * radius_) {
+  } else if (foot_.squaredNorm() > radius * radius) {
     return {};
   }
   return common_part(side, between_planes(base_height_, base_height_ + length_, direction.dot(axis_)));
@@ -57,9 +57,9 @@ Eigen::AlignedBox3d SolidCylinder::bounds() const {
   return {base_.cwiseMin(top_center) - reach, base_.cwiseMax(top_center) + reach};
 }
 
-Interval SolidSphere::intersect(const Vec3& direction) const {
+Interval SolidSphere::intersect(const Vec3& direction, double radius) const {
   const double squared_length = direction.squaredNorm();
-  const double chord = radius_ * radius_ * squared_length - direction.cross(center_).squaredNorm();
+  const double chord = radius * radius * squared_length - direction.cross(center_).squaredNorm();
   if (chord < 0.0) return {};
   const double nearest = direction.dot(center_);
   const double half = std::sqrt(chord);

@@ -23,7 +23,9 @@ class SolidCylinder {
   /// `base` and `top` (metres, different) are the centres of the caps.
   SolidCylinder(const Vec3& base, const Vec3& top, double radius);
 
-  Interval intersect(const Vec3& direction) const;
+  Interval intersect(const Vec3& direction) const { return intersect(direction, radius_); }
+  /// As if it had another radius; where both go through a cap, both give that cap's t bit by bit.
+  Interval intersect(const Vec3& direction, double radius) const;
   Eigen::AlignedBox3d bounds() const;
 
   const Vec3& base() const { return base_; }
@@ -46,7 +48,9 @@ class SolidSphere {
  public:
   SolidSphere(const Vec3& center, double radius) : center_(center), radius_(radius) {}
 
-  Interval intersect(const Vec3& direction) const;
+  Interval intersect(const Vec3& direction) const { return intersect(direction, radius_); }
+  /// As if it had another radius.
+  Interval intersect(const Vec3& direction, double radius) const;
   Eigen::AlignedBox3d bounds() const;
 
   const Vec3& center() const { return center_; }

@@ -29,14 +29,27 @@ struct RayQuery : embree::QueryContext {
   void offer(const Interval& inside, Label label) {
     if (inside.empty() || inside.end < depth_min) return;
     if (inside.begin < depth_min) begins_inside = true;
-    if (inside.begin < first.depth || (inside.begin == first.depth && label < first.label))
+    if (inside.begin < first.depth || (inside.begin == first.depth && label < first.label)) {
       first = {inside.begin, label};
+      enters_bore = false;
+    }
+  }
+
+  template <typename Solid>
+  void offer(const Labelled<Solid>& labelled) {
+    const Interval inside = labelled.solid.intersect(direction);
+    offer(inside, labelled.label);
+    if (labelled.bore_radius == 0.0 || inside.empty() || first.label != labelled.label || first.depth != inside.begin)
+      return;
+    // Only a cap's plane gives the solid and its bore the same first point.
+    enters_bore |= labelled.solid.intersect(direction, labelled.bore_radius).begin == inside.begin;
   }
 
   Vec3 direction;
   double depth_min;
   Hit first;
   bool begins_inside = false;
+  bool enters_bore = false;  ///< at `first`, through the open end of a hollow tube
 };
 
 template <typename Solid>
@@ -62,7 +75,7 @@ template <typename Solid>
 void intersect_solid(const RTCIntersectFunctionNArguments* arguments) {
   const auto& solid = (*static_cast<const Solids<Solid>*>(arguments->geometryUserPtr))[arguments->primID];
   auto& query = *static_cast<RayQuery*>(arguments->context);
-  query.offer(solid.solid.intersect(query.direction), solid.label);
+  query.offer(solid);
   auto& ray = reinterpret_cast<RTCRayHit*>(arguments->rayhit)->ray;
   ray.tfar = std::min(ray.tfar, beyond(query.first.depth));
 }
@@ -97,6 +110,50 @@ RTCRayHit make_ray(const Vec3& direction, double depth_min, double depth_max) {
 
 }  // namespace
 
+namespace {
+
+/// Thinner gaps between the solids of one body, and thinner walls, are rounding (metres).
+constexpr double kSliver = 1e-9;
+
+/// The union of intervals, in order.
+std::vector<Interval> merged(std::vector<Interval>& parts) {
+  std::ranges::sort(parts, {}, &Interval::begin);
+  std::vector<Interval> whole;
+  for (const Interval& part : parts) {
+    if (whole.empty() || part.begin > whole.back().end + kSliver) whole.push_back(part);
+    else whole.back().end = std::max(whole.back().end, part.end);
+  }
+  return whole;
+}
+
+/// What intervals leave of [begin, end], in order.
+std::vector<Interval> without(Interval part, const std::vector<Interval>& holes) {
+  std::vector<Interval> left;
+  const auto keep = [&](double begin, double end) {
+    if (end - begin > kSliver) left.push_back({begin, end});
+  };
+  for (const Interval& hole : holes) {
+    if (hole.end <= part.begin || hole.begin >= part.end) continue;
+    keep(part.begin, hole.begin);
+    part.begin = hole.end;
+  }
+  keep(part.begin, part.end);
+  return left;
+}
+
+}  // namespace
+
+double first_boundary(std::vector<Interval>& parts, std::vector<Interval>& bores, double depth_min) {
+  if (bores.empty()) return first_boundary(parts, depth_min);
+  const std::vector<Interval> holes = merged(bores);
+  for (const Interval& part : merged(parts))
+    for (const Interval& wall : without(part, holes)) {
+      if (wall.begin >= depth_min) return wall.begin;
+      if (wall.end >= depth_min) return wall.end;
+    }
+  return std::numeric_limits<double>::infinity();
+}
+
 double first_boundary(std::vector<Interval>& parts, double depth_min) {
   std::ranges::sort(parts, {}, &Interval::begin);
   double first = std::numeric_limits<double>::infinity();
@@ -128,22 +185,35 @@ Hit RayCaster::first_hit(const Vec3& direction) const {
   for (const Box& box : solids_.bin) query.offer(intersect(box, inverse), 0);
   RTCRayHit ray = make_ray(direction, depth_min_, std::min(depth_max_, query.first.depth));
   embree::intersect(scene_.get(), query, ray);
-  const Hit hit = query.begins_inside ? first_hit_from_inside(direction) : query.first;
+  const Hit hit = query.begins_inside || query.enters_bore ? first_boundary_hit(direction) : query.first;
   return hit.depth <= depth_max_ ? hit : Hit{};
 }
 
-Hit RayCaster::first_hit_from_inside(const Vec3& direction) const {
-  std::map<Label, std::vector<Interval>> parts_of_body;
-  const auto collect = [&](const Interval& inside, Label label) {
-    if (!inside.empty()) parts_of_body[label].push_back(inside);
+Hit RayCaster::first_boundary_hit(const Vec3& direction) const {
+  struct Body {
+    std::vector<Interval> parts;
+    std::vector<Interval> bores;
+  };
+  std::map<Label, Body> bodies;
+  const auto add = [](const Interval& inside, std::vector<Interval>& to) {
+    if (!inside.empty()) to.push_back(inside);
+  };
+  const auto add_solids = [&](const auto& solids) {
+    for (const auto& [solid, label, bore_radius] : solids) {
+      const Interval inside = solid.intersect(direction);
+      if (inside.empty()) continue;
+      Body& body = bodies[label];
+      body.parts.push_back(inside);
+      if (bore_radius > 0.0) add(solid.intersect(direction, bore_radius), body.bores);
+    }
   };
   const Vec3 inverse = inverse_direction(direction);
-  for (const Box& box : solids_.bin) collect(intersect(box, inverse), 0);
-  for (const auto& [solid, label] : solids_.cylinders) collect(solid.intersect(direction), label);
-  for (const auto& [solid, label] : solids_.spheres) collect(solid.intersect(direction), label);
+  for (const Box& box : solids_.bin) add(intersect(box, inverse), bodies[0].parts);
+  add_solids(solids_.cylinders);
+  add_solids(solids_.spheres);
   Hit first;
-  for (auto& [label, parts] : parts_of_body) {
-    const double depth = first_boundary(parts, depth_min_);
+  for (auto& [label, body] : bodies) {
+    const double depth = first_boundary(body.parts, body.bores, depth_min_);
     if (depth < first.depth) first = {depth, label};
   }
   return first;

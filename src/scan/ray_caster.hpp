@@ -20,6 +20,9 @@ struct Hit {
 /// Where a body that consists of convex solids first begins or ends at depth_min or beyond; `parts`, its solids along the
 /// ray, are sorted.
 double first_boundary(std::vector<Interval>& parts, double depth_min);
+/// The same of a body that consists of convex solids without their convex `bores`; both are sorted. Gaps and walls below
+/// a nanometre are rounding.
+double first_boundary(std::vector<Interval>& parts, std::vector<Interval>& bores, double depth_min);
 
 class RayCaster {
  public:
@@ -30,11 +33,13 @@ class RayCaster {
 
   /// The first surface of a tube or of the bin along the ray at depth depth_min or beyond. Where the ray
   /// begins inside a solid that is the surface through which it leaves (or enters another tube); faces
-  /// between the solids of one body are no surface. `direction`: Camera::direction_in_world.
+  /// between the solids of one body are no surface. Through a hollow tube's open end the ray goes on within its bore.
+  /// `direction`: Camera::direction_in_world.
   Hit first_hit(const Vec3& direction) const;
 
  private:
-  Hit first_hit_from_inside(const Vec3& direction) const;
+  /// As first_hit, looking at every boundary of every body.
+  Hit first_boundary_hit(const Vec3& direction) const;
 
   SceneSolids solids_;
   double depth_min_;

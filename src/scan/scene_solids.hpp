@@ -13,8 +13,10 @@ template <typename Solid>
 struct Labelled {
   Solid solid;
   Label label = 0;
+  double bore_radius = 0.0;  ///< metres; 0: the solid has no bore
 };
 
+/// A tube's body is the union of its solids without the union of their bores, which have the same axes and planes.
 struct SceneSolids {
   std::vector<Labelled<SolidCylinder>> cylinders;
   std::vector<Labelled<SolidSphere>> spheres;  ///< where two or more cylinders meet, and nodes alone

@@ -55,6 +55,11 @@ bool begins_before(const SceneSolids& solids, const Camera& camera, double depth
   return std::ranges::any_of(solids.cylinders, is_nearer) || std::ranges::any_of(solids.spheres, is_nearer);
 }
 
+/// Whether a ray may pass through an open end.
+bool is_hollow(const SceneSolids& tube) {
+  return std::ranges::any_of(tube.cylinders, [](const auto& cylinder) { return cylinder.bore_radius > 0.0; });
+}
+
 /// The columns [begin, end) of a row in which a solid may appear.
 struct Columns {
   int begin = 0;
@@ -262,7 +267,7 @@ std::vector<std::vector<SeenPixel>> view_tubes_alone(const Scene& scene) {
   std::vector<std::vector<SeenPixel>> views;
   for (SceneSolids& tube : solids_by_tube(scene, scene_solids(scene))) {
     const PixelWindow window = view_window(tube, SeenBodies::tubes, camera, scene.scanner.range_min);
-    views.push_back(begins_before(tube, camera, scene.scanner.range_min)
+    views.push_back(is_hollow(tube) || begins_before(tube, camera, scene.scanner.range_min)
                         ? view_around(std::move(tube), window, camera, scene.scanner)
                         : view_beyond(tube, window, camera, scene.scanner));
   }

@@ -49,6 +49,13 @@ class FieldsFromJson : public Fields {
   void group(const char* key, const char*, const std::function<void(Fields&)>& describe_inner) override {
     object_.at(key).fields(describe_inner);
   }
+  void list(const char* key, const char*, std::size_t, const std::function<void(std::size_t)>& resize,
+            const std::function<void(Fields&, std::size_t)>& describe_element) override {
+    const std::vector<JsonPlace> elements = object_.at(key).elements();
+    resize(elements.size());
+    for (std::size_t i = 0; i < elements.size(); ++i)
+      elements[i].fields([&](Fields& fields) { describe_element(fields, i); });
+  }
 
  private:
   const JsonPlace& object_;

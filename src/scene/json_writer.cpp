@@ -22,6 +22,14 @@ class JsonFields : public Fields {
     put(key, fields_to_json(describe_inner));
   }
 
+  void list(const char* key, const char*, std::size_t size, const std::function<void(std::size_t)>&,
+            const std::function<void(Fields&, std::size_t)>& describe_element) override {
+    OrderedJson elements = OrderedJson::array();
+    for (std::size_t i = 0; i < size; ++i)
+      elements.push_back(fields_to_json([&](Fields& fields) { describe_element(fields, i); }));
+    put(key, std::move(elements));
+  }
+
   OrderedJson object = OrderedJson::object();
 
  private:

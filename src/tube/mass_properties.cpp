@@ -37,21 +37,6 @@ struct Moments {
   }
 };
 
-/// Unit directions of the other cylinders that leave a node, for one cylinder's end there.
-std::vector<Vec3> neighbour_directions(const Tube& tube, std::size_t cylinder, int node) {
-  std::vector<Vec3> directions;
-  const Vec3& center = tube.nodes[static_cast<std::size_t>(node)];
-  for (std::size_t i = 0; i < tube.cylinders.size(); ++i) {
-    if (i == cylinder) continue;
-    const Cylinder& other = tube.cylinders[i];
-    if (other.node_a == node)
-      directions.push_back((tube.nodes[static_cast<std::size_t>(other.node_b)] - center).normalized());
-    if (other.node_b == node)
-      directions.push_back((tube.nodes[static_cast<std::size_t>(other.node_a)] - center).normalized());
-  }
-  return directions;
-}
-
 /// Where the cylinder's share of a line begins: `offset` is the line's place in the cross-section, `axis` points
 /// into the cylinder. Points nearer (by angle) to a neighbour belong to it; outside, the sphere ends the joint.
 double line_start(const Vec3& offset, const Vec3& axis, const std::vector<Vec3>& neighbours, double radius) {
@@ -72,8 +57,8 @@ void add_cylinder(const Tube& tube, std::size_t index, double radius, Moments& m
   const Vec3 axis = (tube.nodes[static_cast<std::size_t>(cylinder.node_b)] - a) / length;
   const Vec3 u = axis.unitOrthogonal();
   const Vec3 v = axis.cross(u);
-  const std::vector<Vec3> at_a = neighbour_directions(tube, index, cylinder.node_a);
-  const std::vector<Vec3> at_b = neighbour_directions(tube, index, cylinder.node_b);
+  const std::vector<Vec3> at_a = tube.directions_from(cylinder.node_a, index);
+  const std::vector<Vec3> at_b = tube.directions_from(cylinder.node_b, index);
   for (int ring = 0; ring < kRings; ++ring) {
     // Rings of equal area; each ring's root-mean-square radius keeps the disc's second moment exact.
     const double inner = radius * std::sqrt(static_cast<double>(ring) / kRings);

@@ -1,109 +1,103 @@
 #include "tubebin/tube/tube_generator.hpp"
 
-#include <cmath>
+#include <numeric>
 
 namespace tubebin {
 namespace {
 
-/// Rotates `vector` as the rotation does that takes +z to `direction` about their cross product (Algorithm 3,
-/// line 11; the paper prints the dot product where the angle, its arc cosine, is meant). Along -z the cross
-/// product vanishes and any horizontal axis serves.
-Vec3 rotate_from_z_to(const Vec3& direction, const Vec3& vector) {
-  const Vec3 cross = Vec3::UnitZ().cross(direction);
-  const double sine = cross.norm();
-  const double angle = std::atan2(sine, direction.z());  // acos of the dot product, exact near 0 and pi
-  const Vec3 axis = sine > 0.0 ? Vec3(cross / sine) : Vec3::UnitX();
-  return Eigen::AngleAxisd(angle, axis) * vector;
-}
-
-Vec3 spherical(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-}
-
-Tube make_chain(const std::vector<Vec3>& endpoints, const TubeOptions& options) {
-  Tube tube{.radius = options.radius,
-            .wall_thickness = options.wall_thickness,
-            .mass = options.mass,
-            .nodes = endpoints,
-            .cylinders = {}};
-  for (int i = 0; i + 1 < static_cast<int>(endpoints.size()); ++i)
-    tube.cylinders.push_back({.node_a = i, .node_b = i + 1, .order = i});
+Tube generate_tube(const TubeOptions& options, Random& random) {
+  Tube tube = options.shape->generate(options, random);
+  tube.radius = options.radius;
+  tube.wall_thickness = options.wall_thickness;
+  tube.mass = options.mass;
   return tube;
+}
+
+int total_count(const std::vector<TubeKind>& kinds) {
+  return std::accumulate(kinds.begin(), kinds.end(), 0, [](int sum, const TubeKind& kind) { return sum + kind.count; });
+}
+
+double total_share(const std::vector<TubeKind>& kinds) {
+  return std::accumulate(kinds.begin(), kinds.end(), 0.0,
+                         [](double sum, const TubeKind& kind) { return sum + kind.share; });
+}
+
+const TubeKind* draw_by_share(const std::vector<TubeKind>& kinds, Random& random) {
+  double left = random.uniform(0.0, total_share(kinds));
+  const TubeKind* drawn = nullptr;
+  for (const TubeKind& kind : kinds) {
+    if (kind.share == 0.0) continue;
+    drawn = &kind;
+    if (left < kind.share) break;
+    left -= kind.share;
+  }
+  return drawn;
+}
+
+/// Fisher and Yates: every order is as likely.
+template <typename T>
+void shuffle(std::vector<T>& values, Random& random) {
+  for (int i = static_cast<int>(values.size()) - 1; i > 0; --i)
+    std::swap(values[static_cast<std::size_t>(i)], values[static_cast<std::size_t>(random.integer(0, i))]);
 }
 
 }  // namespace
 
 void describe(Fields& fields, TubeOptions& options) {
+  options.shape.describe(fields);
   fields.number("radius", options.radius, {0.0005, 1.0}, "m", "outer radius r");
-  fields.number("length", options.length, {0.001, 100.0}, "m", "length l, the sum of a tube's cylinders");
-  fields.number("cylinder_length_min", options.cylinder_length_min, {0.0001, 100.0}, "m",
-                "shortest cylinder cl_min; longer ones make fewer, straighter stretches");
-  fields.integer("cylinder_count_min", options.cylinder_count_min, {1, 10000}, "", "fewest cylinders cn_min in a tube");
-  fields.integer("cylinder_count_max", options.cylinder_count_max, {1, 10000}, "", "most cylinders cn_max in a tube");
-  fields.number("bend_angle_min_deg", options.bend_angle_min_deg, {0.0, 180.0}, "degrees",
-                "smallest bend theta_min between consecutive cylinders");
-  fields.number("bend_angle_max_deg", options.bend_angle_max_deg, {0.0, 180.0}, "degrees",
-                "largest bend theta_max between consecutive cylinders");
+  options.shape->describe(fields, options);
   fields.number("wall_thickness", options.wall_thickness, {0.0, 1.0}, "m",
-                "wall of a hollow tube, for its inertia; 0 makes it solid");
+                "wall of a hollow tube, whose free ends are open to the scanner; 0 makes it solid");
   fields.number("mass", options.mass, {1e-6, 1e4}, "kg", "mass of one tube");
 }
 
 void check(const TubeOptions& options, const KeyPlaces& places, const std::string& prefix) {
-  if (options.cylinder_count_max < options.cylinder_count_min)
-    places.fail(prefix + ".cylinder_count_max", fmt::format("{} is less than cylinder_count_min = {}",
-                                                            options.cylinder_count_max, options.cylinder_count_min));
-  if (options.bend_angle_max_deg < options.bend_angle_min_deg)
-    places.fail(prefix + ".bend_angle_max_deg", fmt::format("{} is less than bend_angle_min_deg = {}",
-                                                            options.bend_angle_max_deg, options.bend_angle_min_deg));
-  const double least_length = options.cylinder_count_max * options.cylinder_length_min;
-  if (least_length > options.length)
-    places.fail(prefix + ".cylinder_length_min",
-                fmt::format("{} cylinders of at least {} m make {} m, more than the tube's length = {} m; lower "
-                            "cylinder_count_max or cylinder_length_min",
-                            options.cylinder_count_max, options.cylinder_length_min, least_length, options.length));
+  options.shape->check(options, places, prefix);
   if (options.wall_thickness >= options.radius)
     places.fail(prefix + ".wall_thickness", fmt::format("{} m leaves no bore in a radius of {} m; 0 makes it solid",
                                                         options.wall_thickness, options.radius));
 }
 
-std::vector<double> generate_lengths(int count, double length, double cylinder_length_min, Random& random) {
-  std::vector<double> lengths;
-  double remaining = length;
-  for (int i = 0; i <= count - 2; ++i) {
-    const double longest = remaining - (count - 1 - i) * cylinder_length_min;
-    lengths.push_back(random.uniform(cylinder_length_min, std::max(longest, cylinder_length_min)));
-    remaining -= lengths.back();
-  }
-  lengths.push_back(remaining);
-  return lengths;
+void describe(Fields& fields, TubeKind& kind) {
+  fields.integer("count", kind.count, {0, 10000}, "", "of this kind in each scene");
+  fields.number("share", kind.share, {0.0, 1e6}, "",
+                "weight of this kind where each of a scene's further tubes is drawn; shares need not sum to one");
+  describe(fields, static_cast<TubeOptions&>(kind));
 }
 
-std::vector<Vec3> generate_endpoints(const std::vector<double>& lengths, double bend_angle_min, double bend_angle_max,
-                                     Random& random) {
-  std::vector<Vec3> endpoints = {Vec3::Zero()};
-  Vec3 previous_direction = Vec3::UnitZ();
-  for (std::size_t i = 0; i < lengths.size(); ++i) {
-    const double phi = random.uniform(0.0, 2.0 * std::numbers::pi);
-    const double theta =
-        i == 0 ? random.uniform(0.0, std::numbers::pi) : random.uniform(bend_angle_min, bend_angle_max);
-    const Vec3 direction = rotate_from_z_to(previous_direction, spherical(theta, phi));
-    endpoints.push_back(endpoints.back() + lengths[i] * direction);
-    previous_direction = direction;
+void check(const std::vector<TubeKind>& kinds, const std::vector<int>& tube_counts, const KeyPlaces& places) {
+  if (kinds.empty()) return;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    const std::string prefix = fmt::format("kinds[{}]", i);
+    check(static_cast<const TubeOptions&>(kinds[i]), places, prefix);
+    if (kinds[i].count == 0 && kinds[i].share == 0.0)
+      places.fail(prefix, "neither a count nor a share: no tube would be of this kind");
   }
-  return endpoints;
+  const int fixed = total_count(kinds);
+  for (const int count : tube_counts) {
+    if (count < fixed)
+      places.fail("tubes", fmt::format("{} tubes are fewer than the kinds' counts together, {}", count, fixed));
+    if (count > fixed && total_share(kinds) == 0.0)
+      places.fail("tubes", fmt::format("{} tubes are more than the kinds' counts together, {}, and no kind has a "
+                                       "share of the others",
+                                       count, fixed));
+  }
 }
 
 std::vector<Tube> generate_tubes(int count, const TubeOptions& options, Random& random) {
   std::vector<Tube> tubes;
-  for (int m = 0; m < count; ++m) {
-    const int cylinder_count = random.integer(options.cylinder_count_min, options.cylinder_count_max);
-    const std::vector<double> lengths =
-        generate_lengths(cylinder_count, options.length, options.cylinder_length_min, random);
-    tubes.push_back(make_chain(
-        generate_endpoints(lengths, radians(options.bend_angle_min_deg), radians(options.bend_angle_max_deg), random),
-        options));
-  }
+  for (int m = 0; m < count; ++m) tubes.push_back(generate_tube(options, random));
+  return tubes;
+}
+
+std::vector<Tube> generate_mixed_tubes(int count, const std::vector<TubeKind>& kinds, Random& random) {
+  std::vector<const TubeKind*> drawn;
+  for (const TubeKind& kind : kinds) drawn.insert(drawn.end(), static_cast<std::size_t>(kind.count), &kind);
+  while (static_cast<int>(drawn.size()) < count) drawn.push_back(draw_by_share(kinds, random));
+  shuffle(drawn, random);
+  std::vector<Tube> tubes;
+  for (const TubeKind* kind : drawn) tubes.push_back(generate_tube(*kind, random));
   return tubes;
 }
 

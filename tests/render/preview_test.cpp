@@ -57,6 +57,16 @@ TEST_F(Preview, LabelsAgreeWithTheScan) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_labels_agree(testing::random_scene(10, seed));
 }
 
+TEST_F(Preview, LabelsAgreeThroughOpenEnds) {
+  Scene scene = testing::random_scene(10, 8);
+  for (PlacedTube& placed : scene.tubes) placed.tube.wall_thickness = 0.001;
+  // A pipe that stands up: the floor is seen through it.
+  Tube pipe{.radius = 0.03, .wall_thickness = 0.003, .mass = 1.0, .nodes = {{0, 0, 0}, {0, 0, 0.1}}, .cylinders = {}};
+  pipe.cylinders = {{0, 1, 0}};
+  scene.tubes.push_back({pipe, make_pose(Quat::Identity(), Vec3(0, 0, 0.15))});
+  expect_labels_agree(scene);
+}
+
 TEST_F(Preview, LabelsAgreeWithAFloorAtTheRangesEnd) {
   Scene scene = testing::random_scene(10, 4);
   scene.scanner.range_max = 2.0;

@@ -63,6 +63,43 @@ TEST(Scanner, AgreesWithSphereTracingAmongTheTubes) {
   EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 4000);
 }
 
+TEST(Scanner, LooksIntoTheOpenEndsOfHollowTubes) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    Scene scene = random_scene(5, seed);
+    for (PlacedTube& placed : scene.tubes) placed.tube.wall_thickness = 0.002;
+    // A straight pipe that stands up shows the floor through it, one that leans its bore.
+    Tube pipe{.radius = 0.02, .wall_thickness = 0.003, .mass = 1.0, .nodes = {{0, 0, 0}, {0, 0, 0.1}}, .cylinders = {}};
+    pipe.cylinders = {{0, 1, 0}};
+    for (const double lean_deg : {0.0, 20.0})
+      scene.tubes.push_back(
+          {pipe, make_pose(Quat(Eigen::AngleAxisd(radians(lean_deg), Vec3::UnitY())), Vec3(lean_deg / 300, 0, 0.05))});
+    look_closely(scene.scanner, 160, 100);
+    EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 8000);
+  }
+}
+
+TEST(Scanner, HollowTubesAreOpenOnlyAtTheirEnds) {
+  Scene hollow = random_scene(8, 7);
+  look_closely(hollow.scanner, 480, 304);
+  const Scene solid = hollow;
+  for (PlacedTube& placed : hollow.tubes) placed.tube.wall_thickness = 0.001;
+  const Cloud with_bores = scan(hollow).cloud, without = scan(solid).cloud;
+  ASSERT_EQ(with_bores.size(), without.size());
+  std::size_t deeper = 0;
+  for (std::size_t i = 0; i < without.size(); ++i) {
+    if (!is_finite(without.points[i]) || with_bores.points[i] == without.points[i]) continue;
+    ++deeper;
+    const PlacedTube& tube = hollow.tubes[without.labels[i] - 1];  // only tubes have openings
+    const Vec3 at_the_end = without.points[i].cast<double>();
+    const double to_an_end =
+        std::min((at_the_end - tube.node_in_world(0)).norm(),
+                 (at_the_end - tube.node_in_world(static_cast<int>(tube.tube.nodes.size()) - 1)).norm());
+    EXPECT_LT(to_an_end, tube.tube.radius - tube.tube.wall_thickness + 1e-6);
+    EXPECT_FALSE(with_bores.points[i].z() >= without.points[i].z());  // deeper, or nothing at all
+  }
+  EXPECT_GT(deeper, 100u);
+}
+
 TEST(Scanner, SeesTheInnerSurfaceFromInsideATube) {
   Scene scene = random_scene(3, 6);
   look_closely(scene.scanner, 60, 40);

@@ -35,6 +35,18 @@ class Fields {
   virtual void choice(const char* key, int& value, const std::vector<std::string>& names, const char* doc) = 0;
   /// A nested mapping; `describe_inner` describes its fields.
   virtual void group(const char* key, const char* doc, const std::function<void(Fields&)>& describe_inner) = 0;
+  /// A list of mappings. `describe_element(fields, i)` describes the i-th, for i = size that of a new one.
+  virtual void list(const char* key, const char* doc, std::size_t size, const std::function<void(std::size_t)>& resize,
+                    const std::function<void(Fields&, std::size_t)>& describe_element) = 0;
+
+  /// A list of mappings, each described by its type's `describe`.
+  template <typename Element>
+  void list(const char* key, std::vector<Element>& elements, const char* doc) {
+    Element fresh;
+    list(
+        key, doc, elements.size(), [&](std::size_t size) { elements.assign(size, fresh); },
+        [&](Fields& inner, std::size_t i) { describe(inner, i < elements.size() ? elements[i] : fresh); });
+  }
 
   /// An enumeration whose values 0, 1, ... are called `names` in order.
   template <typename Enum>

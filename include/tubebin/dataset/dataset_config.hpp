@@ -30,6 +30,7 @@ struct DatasetConfig {
   int attempts_max = 50;              ///< per scene
   double attempt_time_limit = 120.0;  ///< seconds of wall-clock time, per attempt
   TubeOptions tube;
+  std::vector<TubeKind> kinds;  ///< of a mixed bin, instead of `tube`
   Bin bin;
   PhysicsOptions physics;
   Scanner scanner;

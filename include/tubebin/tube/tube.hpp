@@ -27,6 +27,8 @@ struct Tube {
 
   /// Number of cylinders that meet at each node.
   std::vector<int> node_degrees() const;
+  /// Unit directions of the cylinders that leave a node; `except` is the index of one to leave out.
+  std::vector<Vec3> directions_from(int node, std::size_t except = static_cast<std::size_t>(-1)) const;
   /// Length of one cylinder, metres.
   double length(const Cylinder& cylinder) const {
     return (nodes[static_cast<std::size_t>(cylinder.node_b)] - nodes[static_cast<std::size_t>(cylinder.node_a)]).norm();

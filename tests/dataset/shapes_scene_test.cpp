@@ -1,0 +1,87 @@
+// Every shape from its configuration to a verified data set, as a user makes it.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "dataset/program.hpp"
+#include "tubebin/dataset/dataset_config.hpp"
+#include "tubebin/scene/scene_json.hpp"
+#include "tubebin/scene/tubes_txt.hpp"
+
+namespace tubebin::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string source_file(const std::string& name) { return TUBEBIN_SOURCE_DIR "/" + name; }
+
+/// Makes one scene of `tubes` objects and verifies it.
+SceneRecord make_one(const TemporaryFolder& folder, const std::string& config, const std::string& set, int tubes) {
+  const std::string data = folder / "data";
+  const ProgramResult made = run_generate_dataset(
+      {config, "--output", data, "--tubes", fmt::format("{}", tubes), "--cases", "1", "--jobs", "1"});
+  EXPECT_EQ(made.exit_code, 0) << made.error;
+  const ProgramResult verified = run_generate_dataset({"--verify", data, "--jobs", "1"});
+  EXPECT_EQ(verified.exit_code, 0) << verified.out;
+  const std::string scene = fmt::format("{}/{}{}/001", data, set, tubes);
+  const std::string validate = "python3 " + source_file("tests/validate_json.py") + " " +
+                               source_file("docs/scene.schema.json") + " " + scene + "/scene.json";
+  const int status = std::system(validate.c_str());
+  EXPECT_TRUE(status == 0 || WEXITSTATUS(status) == 77) << validate;
+  EXPECT_EQ(read_tubes_txt(scene + "/tubes.txt").size(), static_cast<std::size_t>(tubes));
+  return read_scene_json(scene + "/scene.json");
+}
+
+TEST(ShapeScenes, PublishedSetCHasTheTreesOfThePublishedFiles) {
+  const TemporaryFolder folder;
+  const SceneRecord record = make_one(folder, source_file("config/published_c.yaml"), "C", 4);
+  // As in the published files: 1-2 of 0.30 m with 1-3, 1-4 of 0.10 m; 2-5 of 0.10 m and 2-6 of 0.15 m.
+  for (const PlacedTube& placed : record.scene.tubes) {
+    const std::vector<int> degrees = placed.tube.node_degrees();
+    EXPECT_EQ(std::ranges::count(degrees, 3), 2);
+    EXPECT_EQ(std::ranges::count(degrees, 1), 4);
+    EXPECT_NEAR(placed.tube.length(), 0.75, 1e-9);
+    EXPECT_EQ(centerline_paths(placed.tube).size(), 5u);
+  }
+}
+
+TEST(ShapeScenes, AMixedBinHasAllKinds) {
+  const TemporaryFolder folder;
+  const SceneRecord record = make_one(folder, source_file("config/mixed.yaml"), "mixed", 6);
+  const auto is_ball = [](const PlacedTube& placed) { return placed.tube.cylinders.empty(); };
+  EXPECT_EQ(std::ranges::count_if(record.scene.tubes, is_ball), 1);
+}
+
+TEST(ShapeScenes, EachShapeAloneIsMadeAndVerified) {
+  for (const char* shape : {"ring", "sphere", "curve"}) {
+    const TemporaryFolder folder;
+    const std::string config = folder / "config.yaml";
+    write_text(config, fmt::format("set: Q\nseed: 5\nscanner: {{width: 320, height: 200}}\ntube: {{shape: {}, "
+                                   "wall_thickness: 0.002}}\n",
+                                   shape));
+    make_one(folder, config, "Q", 2);
+  }
+}
+
+TEST(ShapeScenes, KindsThatCannotBeAreNamedWithTheirPlace) {
+  const TemporaryFolder folder;
+  const std::string config = folder / "config.yaml";
+  const auto problem = [&](const std::string& yaml) {
+    write_text(config, yaml);
+    const ProgramResult result = run_generate_dataset({config, "--output", folder / "data"});
+    EXPECT_EQ(result.exit_code, 2);
+    return result.error;
+  };
+  EXPECT_THAT(problem("kinds:\n  - {shape: ring}\n"),
+              HasSubstr("config.yaml:2:5: kinds[0]: neither a count nor a share"));
+  EXPECT_THAT(problem("kinds:\n  - {share: 1, radius: 0.1, shape: ring}\n"),
+              HasSubstr("config.yaml:2:5: kinds[0].diameter_min: 0.1 m leaves no hole"));
+  EXPECT_THAT(problem("tubes: [2, 3]\nkinds:\n  - {count: 3}\n"),
+              HasSubstr("config.yaml:1:8: tubes: 2 tubes are fewer"));
+  EXPECT_THAT(problem("kinds:\n  - {share: 1}\ntube: {radius: 0.01}\n"),
+              HasSubstr("config.yaml:3:1: tube: unknown key"));
+}
+
+}  // namespace
+}  // namespace tubebin::testing
