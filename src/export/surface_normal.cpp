@@ -22,7 +22,12 @@ struct Nearest {
 
 SurfaceNormals::SurfaceNormals(const Scene& scene) : bin_(scene.bin) {
   for (const PlacedTube& placed : scene.tubes) {
-    TubeParts parts{.radius = placed.tube.radius, .axes = {}, .free_ends = {}, .joints = {}};
+    const double wall = placed.tube.wall_thickness;
+    TubeParts parts{.radius = placed.tube.radius,
+                    .bore_radius = wall > 0.0 ? placed.tube.radius - wall : 0.0,
+                    .axes = {},
+                    .free_ends = {},
+                    .joints = {}};
     const std::vector<int> degrees = placed.tube.node_degrees();
     const auto is_free = [&](int node) { return degrees[static_cast<std::size_t>(node)] == 1; };
     for (const Cylinder& cylinder : placed.tube.cylinders) {
@@ -44,14 +49,17 @@ Vec3 SurfaceNormals::at(Label label, const Vec3& point) const {
 
 Vec3 SurfaceNormals::at_tube(const TubeParts& tube, const Vec3& point) const {
   Nearest nearest;
+  const auto offer_wall = [&](const Vec3& from_middle) {
+    const double distance = from_middle.norm();
+    nearest.offer(distance - tube.radius, from_middle / distance);
+    if (tube.bore_radius > 0.0) nearest.offer(tube.bore_radius - distance, -from_middle / distance);
+  };
   for (const auto& [a, b] : tube.axes) {
     const double along = (point - a).dot(b - a) / (b - a).squaredNorm();
     if (along < 0.0 || along > 1.0) continue;
-    const Vec3 across = point - (a + along * (b - a));
-    nearest.offer(across.norm() - tube.radius, across.normalized());
+    offer_wall(point - (a + along * (b - a)));
   }
-  for (const Vec3& center : tube.joints)
-    nearest.offer((point - center).norm() - tube.radius, (point - center).normalized());
+  for (const Vec3& center : tube.joints) offer_wall(point - center);
   for (const auto& [center, normal] : tube.free_ends)
     if ((point - center).norm() <= tube.radius) nearest.offer((point - center).dot(normal), normal);
   return nearest.normal;

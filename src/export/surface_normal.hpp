@@ -18,6 +18,7 @@ class SurfaceNormals {
  private:
   struct TubeParts {
     double radius = 0.0;
+    double bore_radius = 0.0;                      // 0: solid
     std::vector<std::pair<Vec3, Vec3>> axes;       // of the cylinders
     std::vector<std::pair<Vec3, Vec3>> free_ends;  // centre and outward unit normal
     std::vector<Vec3> joints;

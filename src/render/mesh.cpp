@@ -19,36 +19,41 @@ class MeshBuilder {
   }
 
   /// One cylinder of a hollow tube: outside, bore, and a ring of wall at each free end. `at_base` and `at_top` are the
-  /// directions in which other cylinders leave its ends.
+  /// directions in which other cylinders leave its ends; nothing of it reaches into their bores.
   void add_pipe(const Vec3& base, const Vec3& top, double radius, double bore_radius, const std::vector<Vec3>& at_base,
                 const std::vector<Vec3>& at_top) {
     const Rim rim(base, top, fineness_.facets);
-    add_side(base, top, radius, rim);
     if (at_base.empty()) add_disc(base, -rim.axis, bore_radius, radius, rim);
     if (at_top.empty()) add_disc(top, rim.axis, bore_radius, radius, rim);
     const double length = (top - base).norm();
     const int steps = steps_over(length);
-    add_patch(fineness_.facets, steps, [&](int facet, int step) -> Vertex {
-      const Vec3 offset = bore_radius * rim.outward(facet);
-      const double from = std::min(mitre(offset, rim.axis, at_base), length);
-      const double to = std::max(length - mitre(offset, -rim.axis, at_top), from);
-      return vertex(base + offset + rim.axis * (from + (to - from) * step / steps), -rim.outward(facet));
-    });
+    const auto add_mitred_side = [&](double side_radius, double facing) {
+      add_patch(fineness_.facets, steps, [&](int facet, int step) -> Vertex {
+        const Vec3 offset = side_radius * rim.outward(facet);
+        const double from = std::min(mitre(offset, rim.axis, at_base), length);
+        const double to = std::max(length - mitre(offset, -rim.axis, at_top), from);
+        return vertex(base + offset + rim.axis * (from + (to - from) * step / steps), facing * rim.outward(facet));
+      });
+    };
+    add_mitred_side(radius, 1.0);
+    add_mitred_side(bore_radius, -1.0);
   }
 
-  /// The part of a joint's inner sphere that lies in no bore; `arms` are the directions of the joint's cylinders.
-  void add_bore_joint(const Vec3& center, double radius, const std::vector<Vec3>& arms) {
-    const auto is_wall = [&](const Vertex& vertex) {
-      return std::ranges::all_of(arms, [&](const Vec3& arm) { return arm.dot(vertex.normal.cast<double>()) >= 0.0; });
-    };
+  /// The part of a hollow tube's joint that lies in none of its cylinders, whose directions are `arms`: outside and in the
+  /// bore.
+  void add_pipe_joint(const Vec3& center, double radius, double bore_radius, const std::vector<Vec3>& arms) {
     const int rings = std::max(fineness_.facets / 2, 2);
-    add_patch(
-        fineness_.facets, rings,
-        [&](int facet, int ring) -> Vertex {
-          const Vec3 outward = on_unit_sphere(facet, ring, rings);
-          return vertex(center + radius * outward, -outward);
-        },
-        is_wall);
+    const auto add_part = [&](double part_radius, double facing) {
+      add_patch(
+          fineness_.facets, rings,
+          [&](int facet, int ring) -> Vertex {
+            const Vec3 outward = moved_off_cylinders(on_unit_sphere(facet, ring, rings), arms);
+            return vertex(center + part_radius * outward, facing * outward);
+          },
+          [](const Vertex& vertex) { return !vertex.normal.isZero(); });
+    };
+    add_part(radius, 1.0);
+    add_part(bore_radius, -1.0);
   }
 
   void add_sphere(const Vec3& center, double radius) {
@@ -95,15 +100,35 @@ class MeshBuilder {
     return {std::sin(polar) * std::cos(longitude), std::sin(polar) * std::sin(longitude), std::cos(polar)};
   }
 
-  /// Where a line of the bore's side leaves its neighbours' bores: equal cylinders meet in the plane that bisects their
+  /// A point of the unit sphere that lies just within a cylinder (a half-space of an arm's direction) goes to the border
+  /// of those that lie in none; zero where that is far.
+  static Vec3 moved_off_cylinders(Vec3 outward, const std::vector<Vec3>& arms) {
+    constexpr double kFar = 0.5;
+    constexpr double kNone = 1e-3;
+    constexpr int kIterations = 30;
+    const auto deepest = [&] {
+      return *std::ranges::max_element(arms, {}, [&](const Vec3& arm) { return arm.dot(outward); });
+    };
+    if (deepest().dot(outward) > kFar) return Vec3::Zero();
+    for (int i = 0; i < kIterations; ++i) {
+      const Vec3 arm = deepest();
+      if (arm.dot(outward) <= 0.0) return outward;
+      outward = (outward - arm.dot(outward) * arm).normalized();
+    }
+    return deepest().dot(outward) < kNone ? outward : Vec3::Zero();
+  }
+
+  /// Where a line of a cylinder's side leaves its neighbours: equal cylinders meet in the plane that bisects their
   /// axes. `axis` points into the cylinder.
   static double mitre(const Vec3& offset, const Vec3& axis, const std::vector<Vec3>& neighbours) {
+    constexpr double kOverlap = 0.03;  // of the radius, so that no crack shows between facets
+    if (neighbours.empty()) return 0.0;
     double start = 0.0;
     for (const Vec3& direction : neighbours) {
       const double spread = 1.0 - direction.dot(axis);
       if (spread > 1e-9) start = std::max(start, direction.dot(offset) / spread);
     }
-    return start;
+    return start - kOverlap * offset.norm();
   }
 
   void add_side(const Vec3& base, const Vec3& top, double radius, const Rim& rim) {
@@ -131,15 +156,16 @@ class MeshBuilder {
     return static_cast<int>(std::clamp(std::ceil(length / fineness_.cell), 1.0, kMostSteps));
   }
 
-  /// columns x rows quads over vertices vertex_at(0..columns, 0..rows); a triangle stays where
-  /// `is_kept` says so of its first one.
+  /// columns x rows quads over vertices vertex_at(0..columns, 0..rows); triangles stay whose vertices
+  /// are all kept.
   template <typename VertexAt, typename IsKept>
   void add_patch(int columns, int rows, const VertexAt& vertex_at, const IsKept& is_kept) {
     const std::uint32_t first = next_index();
     for (int column = 0; column <= columns; ++column)
       for (int row = 0; row <= rows; ++row) mesh_.vertices.push_back(vertex_at(column, row));
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-      if (is_kept(mesh_.vertices[a])) mesh_.indices.insert(mesh_.indices.end(), {a, b, c});
+      if (is_kept(mesh_.vertices[a]) && is_kept(mesh_.vertices[b]) && is_kept(mesh_.vertices[c]))
+        mesh_.indices.insert(mesh_.indices.end(), {a, b, c});
     };
     for (int column = 0; column < columns; ++column) {
       for (int row = 0; row < rows; ++row) {
@@ -181,14 +207,16 @@ void add_pipes(const PlacedTube& placed, MeshBuilder& builder) {
   }
   for (int node = 0; node < static_cast<int>(tube.nodes.size()); ++node) {
     const std::vector<Vec3> arms = arms_in_world(placed, node);
-    if (arms.size() > 1) builder.add_bore_joint(placed.node_in_world(node), bore_radius, arms);
+    if (arms.size() > 1) builder.add_pipe_joint(placed.node_in_world(node), tube.radius, bore_radius, arms);
   }
 }
 
-void add_solid_cylinders(const PlacedTube& placed, MeshBuilder& builder) {
-  for (const Cylinder& cylinder : placed.tube.cylinders)
-    builder.add_cylinder(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b),
-                         placed.tube.radius);
+void add_solids(const PlacedTube& placed, const std::vector<int>& degrees, MeshBuilder& builder) {
+  const Tube& tube = placed.tube;
+  for (const Cylinder& cylinder : tube.cylinders)
+    builder.add_cylinder(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b), tube.radius);
+  for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
+    if (degrees[static_cast<std::size_t>(node)] != 1) builder.add_sphere(placed.node_in_world(node), tube.radius);
 }
 
 }  // namespace
@@ -198,10 +226,8 @@ Mesh tube_mesh(const PlacedTube& placed, const Vec3& origin, const Fineness& fin
   MeshBuilder builder(mesh, origin, fineness);
   const std::vector<int> degrees = placed.tube.node_degrees();
   const bool is_open = placed.tube.wall_thickness > 0.0 && std::ranges::find(degrees, 1) != degrees.end();
-  is_open ? add_pipes(placed, builder) : add_solid_cylinders(placed, builder);
-  for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
-    if (degrees[static_cast<std::size_t>(node)] != 1)
-      builder.add_sphere(placed.node_in_world(node), placed.tube.radius);
+  if (is_open) add_pipes(placed, builder);
+  else add_solids(placed, degrees, builder);
   return mesh;
 }
 

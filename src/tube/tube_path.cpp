@@ -32,6 +32,14 @@ void check(const PathOptions& options, const KeyPlaces& places, const std::strin
                             options.cylinder_count_max, options.cylinder_length_min, least_length, options.length));
 }
 
+void check_open_ends(const PathOptions& options, double radius, double wall_thickness, const KeyPlaces& places,
+                     const std::string& prefix) {
+  if (wall_thickness > 0.0 && options.cylinder_count_max > 1 && options.cylinder_length_min < radius)
+    places.fail(prefix + ".cylinder_length_min",
+                fmt::format("{} m is less than the radius = {} m of a hollow tube: its joints would close its ends",
+                            options.cylinder_length_min, radius));
+}
+
 std::vector<double> generate_lengths(int count, double length, double cylinder_length_min, Random& random) {
   std::vector<double> lengths;
   double remaining = length;

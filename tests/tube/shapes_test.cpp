@@ -221,17 +221,45 @@ TEST(Curve, BendsSmoothlyAndNoTighterThanTheOptionsSay) {
     double tightest = 0.0;
     for (const Tube& tube : generate_tubes(200, options, random)) {
       EXPECT_NEAR(tube.length(), 0.5, 1e-9);
-      EXPECT_EQ(tube.cylinders.size(), 250u);
-      const auto [shortest, longest] =
-          std::ranges::minmax(tube.cylinders, {}, [&](const Cylinder& cylinder) { return tube.length(cylinder); });
-      EXPECT_GT(tube.length(shortest), 0.00195);
-      EXPECT_LT(tube.length(longest), 0.00205);
+      for (std::size_t i = 0; i < tube.cylinders.size(); ++i) {
+        const bool is_end = i == 0 || i + 1 == tube.cylinders.size();
+        EXPECT_LT(tube.length(tube.cylinders[i]), is_end ? 0.04 : 0.00205);
+      }
       tightest = std::max(tightest, largest_curvature(tube));
     }
     const double bound = std::string(form) == "arcs" ? radians(60.0) / 0.05 : 1.0 / 0.036;
-    EXPECT_LT(tightest, 1.01 * bound) << form;
-    EXPECT_GT(tightest, 0.9 * bound) << form;  // and the options are used up
+    EXPECT_LT(tightest, 1.03 * bound) << form;  // chords of arcs measure too much, the long ones at ends 2.3 %
+    EXPECT_GT(tightest, 0.9 * bound) << form;   // and the options are used up
   }
+}
+
+/// How far a joint's sphere sticks out of a flat end, beyond its plane.
+double closes_its_ends_by(const Tube& tube) {
+  const std::vector<int> degrees = tube.node_degrees();
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t end = 0; end < degrees.size(); ++end) {
+    if (degrees[end] != 1) continue;
+    const Vec3 inward = tube.directions_from(static_cast<int>(end)).front();
+    for (std::size_t i = 0; i < degrees.size(); ++i)
+      if (degrees[i] > 1 && (tube.nodes[i] - tube.nodes[end]).norm() < 3.0 * tube.radius)
+        most = std::max(most, tube.radius - inward.dot(tube.nodes[i] - tube.nodes[end]));
+  }
+  return most;
+}
+
+TEST(Curve, EndsFlat) {
+  for (const char* form : {"arcs", "spline"}) {
+    Random random(8);
+    const TubeOptions options = read_tube(fmt::format("tube: {{shape: curve, form: {}, radius: 0.02}}\n", form));
+    for (const Tube& tube : generate_tubes(200, options, random)) EXPECT_LE(closes_its_ends_by(tube), 0.0) << form;
+  }
+}
+
+TEST(HollowTubes, NeedEndsThatNoJointCloses) {
+  EXPECT_THAT(problem_with("tube: {wall_thickness: 0.001, cylinder_length_min: 0.012}\n"), HasSubstr("close its ends"));
+  EXPECT_EQ(problem_with("tube: {wall_thickness: 0.001, cylinder_length_min: 0.013}\n"), "");
+  EXPECT_THAT(problem_with("tube: {shape: branching, wall_thickness: 0.001, paths: [{cylinder_length_min: 0.01}]}\n"),
+              HasSubstr("tube.paths[0].cylinder_length_min"));
 }
 
 TEST(Curve, ArcsHaveConstantCurvature) {

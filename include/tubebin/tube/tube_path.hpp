@@ -23,6 +23,11 @@ void describe(Fields& fields, PathOptions& options);
 /// Throws ConfigError where options contradict each other; `prefix` is the options' key path.
 void check(const PathOptions& options, const KeyPlaces& places, const std::string& prefix);
 
+/// Throws ConfigError where a path's end may be nearer than the radius to a joint, whose sphere then closes the opening of
+/// a hollow tube.
+void check_open_ends(const PathOptions& options, double radius, double wall_thickness, const KeyPlaces& places,
+                     const std::string& prefix);
+
 /// Algorithm 2: `count` lengths of at least `cylinder_length_min` that sum to `length` (metres).
 std::vector<double> generate_lengths(int count, double length, double cylinder_length_min, Random& random);
 

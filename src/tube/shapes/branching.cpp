@@ -32,13 +32,14 @@ class Branching : public CopiedShape<Branching> {
     fields.list("paths", paths_, "the tree's paths, each grown from a node that an earlier one has");
   }
 
-  void check(const TubeOptions&, const KeyPlaces& places, const std::string& prefix) const override {
+  void check(const TubeOptions& options, const KeyPlaces& places, const std::string& prefix) const override {
     if (paths_.empty()) places.fail(prefix + ".paths", "missing; a branching tube is a list of paths");
     std::map<int, int> arms;  // of each node
     for (std::size_t i = 0; i < paths_.size(); ++i) {
       const Branch& path = paths_[i];
       const std::string place = fmt::format("{}.paths[{}]", prefix, i);
       tubebin::check(static_cast<const PathOptions&>(path), places, place);
+      check_open_ends(path, options.radius, options.wall_thickness, places, place);
       if (i > 0 && !arms.contains(path.from))
         places.fail(place + ".from", fmt::format("no earlier path has the node {}", path.from));
       if (path.to == path.from || arms.contains(path.to))

@@ -11,6 +11,7 @@ class Chain : public CopiedShape<Chain> {
   }
   void check(const TubeOptions& options, const KeyPlaces& places, const std::string& prefix) const override {
     tubebin::check(static_cast<const PathOptions&>(options), places, prefix);
+    check_open_ends(options, options.radius, options.wall_thickness, places, prefix);
   }
   Tube generate(const TubeOptions& options, Random& random) const override {
     Tube tube;

@@ -9,14 +9,27 @@ namespace {
 
 enum class Form { arcs, spline };
 
-/// Points of a polyline at equal distances along it, from its first to its last point.
-std::vector<Vec3> resample(const std::vector<Vec3>& line, int count) {
+double length_of(const std::vector<Vec3>& line) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
+  return length;
+}
+
+void scale(std::vector<Vec3>& line, double factor) {
+  for (Vec3& point : line) point *= factor;
+}
+
+/// Points of a polyline from its first to its last: `ends` apart at both ends, and between them at equal distances of at
+/// most `step` (metres along the line).
+std::vector<Vec3> resample(const std::vector<Vec3>& line, double ends, double step) {
   std::vector<double> along = {0.0};
   for (std::size_t i = 1; i < line.size(); ++i) along.push_back(along.back() + (line[i] - line[i - 1]).norm());
+  const double between = along.back() - 2.0 * ends;
+  const int count = static_cast<int>(std::ceil(between / step));
   std::vector<Vec3> points = {line.front()};
   std::size_t i = 1;
-  for (int k = 1; k < count; ++k) {
-    const double wanted = along.back() * k / count;
+  for (int k = 0; k <= count; ++k) {
+    const double wanted = ends + between * k / count;
     while (along[i] < wanted) ++i;
     points.push_back(line[i - 1] + (line[i] - line[i - 1]) * ((wanted - along[i - 1]) / (along[i] - along[i - 1])));
   }
@@ -64,12 +77,13 @@ std::vector<Vec3> cubic_spline(const std::vector<Vec3>& corners) {
   return line;
 }
 
-/// Smallest radius of curvature of a path of equally long cylinders, metres.
+/// Smallest radius of curvature of a path, metres, by the angle between cylinders and the distance of their middles.
 double least_bend_radius(const Tube& tube) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 2; i < tube.nodes.size(); ++i) {
     const Vec3 before = tube.nodes[i - 1] - tube.nodes[i - 2], after = tube.nodes[i] - tube.nodes[i - 1];
-    least = std::min(least, after.norm() / std::atan2(before.cross(after).norm(), before.dot(after)));
+    least = std::min(least,
+                     0.5 * (before.norm() + after.norm()) / std::atan2(before.cross(after).norm(), before.dot(after)));
   }
   return least;
 }
@@ -104,6 +118,9 @@ class Curve : public CopiedShape<Curve> {
       places.fail(prefix + ".section_length_min",
                   fmt::format("{} sections of at least {} m make {} m, more than the tube's length = {} m",
                               section_count_max_, section_length_min_, least_length, length_));
+    if (3.0 * end_length(options) > length_)
+      places.fail(prefix + ".length", fmt::format("{} m is less than three times the {} m of a straight end", length_,
+                                                  end_length(options)));
     if (tightest_bend() < options.radius)
       places.fail(prefix + ".bend_angle_max_deg",
                   fmt::format("{} degrees over {} m bend with a radius of {:.4f} m, less than the tube's radius = {} m",
@@ -111,26 +128,29 @@ class Curve : public CopiedShape<Curve> {
   }
 
   Tube generate(const TubeOptions& options, Random& random) const override {
-    Tube tube = draw(random);
-    while (least_bend_radius(tube) < options.radius) tube = draw(random);
+    Tube tube = draw(options, random);
+    while (least_bend_radius(tube) < options.radius) tube = draw(options, random);
     return tube;
   }
 
  private:
-  Tube draw(Random& random) const {
+  Tube draw(const TubeOptions& options, Random& random) const {
     const int section_count = random.integer(section_count_min_, section_count_max_);
     const std::vector<double> lengths = generate_lengths(section_count, length_, section_length_min_, random);
     const double bend_min = radians(bend_angle_min_deg_), bend_max = radians(bend_angle_max_deg_);
-    const std::vector<Vec3> line = form_ == Form::arcs
-                                       ? arcs(lengths, bend_min, bend_max, random)
-                                       : cubic_spline(generate_endpoints(lengths, bend_min, bend_max, random));
+    std::vector<Vec3> line = form_ == Form::arcs
+                                 ? arcs(lengths, bend_min, bend_max, random)
+                                 : cubic_spline(generate_endpoints(lengths, bend_min, bend_max, random));
+    scale(line, length_ / length_of(line));  // splines cut corners
     Tube tube;
     tube.nodes = {Vec3::Zero()};
-    append_path(0, resample(line, static_cast<int>(std::ceil(length_ / cylinder_length_max_))), tube);
-    const double scale = length_ / tube.length();  // chords are shorter than arcs, splines cut corners
-    for (Vec3& node : tube.nodes) node *= scale;
+    append_path(0, resample(line, end_length(options), cylinder_length_max_), tube);
+    scale(tube.nodes, length_ / tube.length());  // chords are shorter than arcs
     return tube;
   }
+
+  /// A joint's sphere would stick out of a flat end that is nearer than the tube's radius (and a little for the bend).
+  double end_length(const TubeOptions& options) const { return std::max(1.05 * options.radius, cylinder_length_max_); }
 
   /// The radius of curvature, metres, of the tightest arc, or where a B-spline's shortest sides meet at the largest
   /// angle. Beside longer sides, near its ends, a spline may bend more tightly.
