@@ -63,10 +63,15 @@ std::vector<TubePiece> find_cylinder_pieces(const FilteredCloud& cloud, const st
   return pieces;
 }
 
-double standard_deviation(const std::vector<NearestSurface>& nearest) {
+/// Whether the point may be of the tube's surface: within half a radius, beyond which are bridges' errors and strays.
+bool is_about(const NearestSurface& nearest, double radius) {
+  return nearest.surface != NearestSurface::kNone && std::abs(double(nearest.distance)) < radius / 2.0;
+}
+
+double standard_deviation(const std::vector<NearestSurface>& nearest, double radius) {
   double squares = 0.0, count = 0.0;
   for (const NearestSurface& n : nearest)
-    if (n.surface != NearestSurface::kNone) squares += double(n.distance) * double(n.distance), count += 1.0;
+    if (is_about(n, radius)) squares += double(n.distance) * double(n.distance), count += 1.0;
   return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
@@ -79,19 +84,20 @@ std::vector<NearestSurface> nearest_tubes(const FilteredCloud& cloud, const Mode
       surfaces.push_back({path.nodes, result.tubes[t].radius});
       tube_of_surface.push_back(t);
     }
-  // Half a radius: what a bridge's guessed course may be off; the nearest tube wins all the same.
-  auto nearest = nearest_surfaces(cloud.points, surfaces, result.radius / 2.0);
+  // Half a radius is what a bridge's guessed course may be off, as much again what a scanner strews about an edge. The
+  // nearest tube wins all the same.
+  auto nearest = nearest_surfaces(cloud.points, surfaces, result.radius);
   for (NearestSurface& n : nearest)
     if (n.surface != NearestSurface::kNone) n.surface = tube_of_surface[n.surface];
   return nearest;
 }
 
-/// Points about a tube lie on its surface; points that happen to be somewhere lie anywhere within reach, two fifths of
-/// them in its nearest two fifths. True if any tube went.
+/// Points about a tube lie on its surface; of points that happen to be somewhere within half a radius, two fifths lie in
+/// the nearest two fifths. True if any tube went.
 bool drop_tubes_of_chance(ModelingResult& result, const std::vector<NearestSurface>& nearest) {
   std::vector<double> points(result.tubes.size(), 0.0), on_surface(result.tubes.size(), 0.0);
   for (const NearestSurface& n : nearest) {
-    if (n.surface == NearestSurface::kNone) continue;
+    if (!is_about(n, result.radius)) continue;
     points[n.surface] += 1.0;
     if (std::abs(double(n.distance)) < result.radius / 5.0) on_surface[n.surface] += 1.0;
   }
@@ -106,7 +112,7 @@ bool drop_tubes_of_chance(ModelingResult& result, const std::vector<NearestSurfa
 std::vector<Label> label_points(const FilteredCloud& cloud, ModelingResult& result) {
   auto nearest = nearest_tubes(cloud, result);
   if (drop_tubes_of_chance(result, nearest)) nearest = nearest_tubes(cloud, result);
-  result.noise = standard_deviation(nearest);
+  result.noise = standard_deviation(nearest, result.radius);
   std::vector<Label> labels;
   for (const NearestSurface& n : nearest) labels.push_back(n.surface == NearestSurface::kNone ? 0 : n.surface + 1);
   return labels;
