@@ -143,7 +143,7 @@ EOF
       echo "## The published scenes"
       echo
       echo "$(find "$published" -name '*.txt' | wc -l) scenes that the paper's authors settled with Gazebo, scanned and modelled"
-      echo "here. Set C's tubes branch, which neither method models."
+      echo "here. Set C's tubes branch, which \`region_growing\` does not model."
       echo
       cat "$output/published.md"
       echo
