@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 std::vector<CloudFile> find_clouds(const std::string& dataset) try {
   std::vector<CloudFile> clouds;
   for (const auto& entry : fs::recursive_directory_iterator(dataset)) {
-    const fs::path path = entry.path();
+    const fs::path& path = entry.path();
     const fs::path scene = fs::relative(path.parent_path(), dataset);
     const bool is_hidden = scene.filename().string().starts_with('.') && scene != ".";
     if ((path.filename() == "cloud.pcd" || path.filename() == "cloud.ply") && !is_hidden)
