@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "modeling/median.hpp"
+
 namespace tubebin {
 namespace {
 
@@ -29,9 +31,7 @@ struct Share {
 /// How many of the points do not lie at the height above the floor that most of them share.
 double count_off_rim(std::vector<double> heights, double tolerance) {
   if (heights.empty()) return 0.0;
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  const double rim = *middle;
+  const double rim = median(heights);
   return static_cast<double>(
       std::count_if(heights.begin(), heights.end(), [&](double h) { return std::abs(h - rim) > tolerance; }));
 }

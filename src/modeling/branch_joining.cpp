@@ -1,7 +1,6 @@
 #include "tubebin/modeling/branch_joining.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include "tubebin/modeling/vote_voxels.hpp"
 
@@ -70,11 +69,13 @@ std::vector<Vec3> line_between(const Vec3& tip, const Vec3& place, double radius
 
 }  // namespace
 
-bool starts_on_side(const Vec3& tip, const Vec3& outward, const std::vector<Vec3>& nodes, double radius) {
+std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const std::vector<Vec3>& nodes, double radius) {
   // Closer than nine tenths of a radius, to leave room for what fits are off.
-  if (distance_to_polyline(tip, nodes) > 0.9 * radius) return false;
+  if (distance_to_polyline(tip, nodes) > 0.9 * radius) return std::nullopt;
   const std::optional<Vec3> place = place_ahead({tip, outward}, nodes, radius, 1.5 * radius);
-  return place && (*place - nodes.front()).norm() > radius && (*place - nodes.back()).norm() > radius;
+  const bool is_at_end =
+      place && ((*place - nodes.front()).norm() <= radius || (*place - nodes.back()).norm() <= radius);
+  return is_at_end ? std::nullopt : place;
 }
 
 std::vector<TubeModel> join_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion) {
@@ -84,9 +85,7 @@ std::vector<TubeModel> join_branches(std::vector<TubePath> paths, double radius,
   find_branches(
       paths,
       [&](const Tip& tip, const TubePath& other) {
-        return starts_on_side(tip.position, tip.outward, other.nodes, radius)
-                   ? place_ahead(tip, other.nodes, radius, 1.5 * radius)
-                   : std::nullopt;
+        return place_on_side(tip.position, tip.outward, other.nodes, radius);
       },
       branches);
   find_branches(

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 
-#include "tubebin/modeling/vote_graph.hpp"
-
 namespace tubebin {
 namespace {
 
 /// The voxels farther than `reach` metres from the way, by the connected parts that they make up.
-std::vector<std::vector<std::uint32_t>> parts_off(const VoteGraph& graph, const std::vector<std::uint32_t>& way,
+/// `distance`: of each voxel from the way.
+std::vector<std::vector<std::uint32_t>> parts_off(const VoteGraph& graph, const std::vector<double>& distance,
                                                   double reach) {
-  const std::vector<double> distance = graph.distances_from(way);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
   for (std::uint32_t i = 0; i < graph.size(); ++i)
     for (const std::uint32_t j : graph.linked(i))
@@ -25,29 +23,33 @@ std::vector<std::vector<std::uint32_t>> parts_off(const VoteGraph& graph, const 
 
 }  // namespace
 
-std::vector<Segment> split_branches(const FilteredCloud& cloud, const Segment& segment, double radius) {
-  const VoteGraph graph(cloud, segment, radius);
-  const std::vector<std::uint32_t> way = graph.longest_way();
+std::vector<Stretch> split_branches(const FilteredCloud& cloud, const Segment& segment, double radius) {
+  VoteGraph graph(cloud, segment, radius);
   // A flat end's votes lie up to a radius beside the line, and scatter by half as much. A part that reaches two radii
   // farther is longer than it is wide.
   const double reach = 1.5 * radius, least = 3.5 * radius;
-  const std::vector<double> distance = graph.distances_from(way);
+  const std::vector<double> distance = graph.distances_from(graph.longest_way());
   std::vector<std::uint32_t> segment_of_voxel(graph.size(), 0);
   std::uint32_t segments = 1;
-  for (const auto& part : parts_off(graph, way, reach)) {
+  for (const auto& part : parts_off(graph, distance, reach)) {
     double farthest = 0.0;
     for (const std::uint32_t i : part) farthest = std::max(farthest, distance[i]);
     if (farthest < least) continue;
     for (const std::uint32_t i : part) segment_of_voxel[i] = segments;
     ++segments;
   }
-  if (segments == 1) return {segment};
+  std::vector<Stretch> result;
+  if (segments == 1) {
+    result.push_back({segment, std::move(graph)});
+    return result;
+  }
 
   std::vector<Segment> split(segments);
   for (std::size_t k = 0; k < segment.size(); ++k) split[segment_of_voxel[graph.voxel_of(k)]].push_back(segment[k]);
-  std::vector<Segment> result = {std::move(split.front())};
+  VoteGraph longest(cloud, split.front(), radius);
+  result.push_back({std::move(split.front()), std::move(longest)});
   for (std::size_t s = 1; s < split.size(); ++s)
-    for (Segment& part : split_branches(cloud, split[s], radius)) result.push_back(std::move(part));
+    for (Stretch& part : split_branches(cloud, split[s], radius)) result.push_back(std::move(part));
   return result;
 }
 

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "tubebin/modeling/surface_fitting.hpp"
-#include "tubebin/modeling/vote_graph.hpp"
 
 namespace tubebin {
 namespace {
@@ -23,8 +22,7 @@ struct Vote {
 /// Mean votes at equal geodesic distance from one end: the level sets' centres are a first skeleton (Verroust and
 /// Lazarus 2000, "Extracting skeletal curves from 3D scattered data").
 std::vector<Vec3> level_set_skeleton(const VoteGraph& graph, double step) {
-  const std::uint32_t end = graph.far_end();
-  const std::vector<double> distance = graph.distances_from({&end, 1});
+  const std::vector<double>& distance = graph.distances_from_end();
   std::vector<Vec3> sums;
   std::vector<double> counts;
   for (std::size_t i = 0; i < graph.size(); ++i) {
@@ -170,8 +168,9 @@ void drop_joints_at_ends(std::vector<Vec3>& nodes, double radius) {
 
 }  // namespace
 
-std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Segment& segment,
+std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Stretch& stretch,
                                         std::span<const SurfacePoint> loose, double radius, const Vec3& viewpoint) {
+  const Segment& segment = stretch.segment;
   // Some hundred votes make a curve as well as all would: its error falls below a tenth of their scatter.
   constexpr std::size_t kVotes = 800;
   std::vector<Vote> votes;
@@ -183,7 +182,7 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Segmen
     surface.push_back({p, n});
     votes.push_back({.point = p, .normal = n, .center = p - radius * n});
   }
-  std::vector<Vec3> curve = level_set_skeleton(VoteGraph(cloud, segment, radius), radius / 3.0);
+  std::vector<Vec3> curve = level_set_skeleton(stretch.graph, radius / 3.0);
   if (curve.size() >= 3) curve = smooth(curve, votes, radius / 3.0, radius);
   if (curve.size() >= 3) curve = smooth(curve, votes, radius / 3.0, radius);
   curve = trim(curve, 1.5 * radius);

@@ -27,7 +27,7 @@ std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vecto
   const Vec3 viewpoint = projection.viewpoint().cast<double>();
   std::vector<TubePiece> pieces;
   for (const Segment& segment : segments)
-    for (const Segment& stretch : split_branches(cloud, segment, radius))
+    for (const Stretch& stretch : split_branches(cloud, segment, radius))
       if (auto piece = fit_centerline(cloud, stretch, loose, radius, viewpoint)) pieces.push_back(std::move(*piece));
   return pieces;
 }

@@ -204,7 +204,7 @@ std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, cons
       end.seen_free = beyond.empty;
       end.is_on_side =
           piece.length() > piece.radius && std::any_of(pieces.begin(), pieces.end(), [&](const auto& other) {
-            return &other != &piece && starts_on_side(end.position, end.outward, other.nodes, piece.radius);
+            return &other != &piece && place_on_side(end.position, end.outward, other.nodes, piece.radius).has_value();
           });
       end.hidden_reach = occlusion.hidden_reach(end.position, end.outward, reach_limit);
       ends.push_back(end);

@@ -40,7 +40,8 @@ double estimate_radius_of(const FilteredCloud& cloud, const ViewProjection& proj
   const Vec3 viewpoint = projection.viewpoint().cast<double>();
   std::vector<TubePiece> pieces;
   for (std::size_t k = 0; k < segments.size() && pieces.size() < kPieces; ++k)
-    if (auto piece = fit_centerline(cloud, segments[k], {}, first, viewpoint)) pieces.push_back(std::move(*piece));
+    if (auto piece = fit_centerline(cloud, {segments[k], VoteGraph(cloud, segments[k], first)}, {}, first, viewpoint))
+      pieces.push_back(std::move(*piece));
   return refine_radius(pieces, cloud.points, first);
 }
 

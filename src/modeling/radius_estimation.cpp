@@ -6,16 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "modeling/median.hpp"
 #include "tubebin/modeling/view_grid.hpp"
 
 namespace tubebin {
 namespace {
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Largest principal curvature at a point: the symmetric 2 x 2 map from tangent offsets to changes of the normal, by
 /// least squares over its neighbours. 0 where the surface curves both ways.

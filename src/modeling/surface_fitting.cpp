@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "modeling/median.hpp"
+
 namespace tubebin {
 namespace {
 
@@ -48,12 +50,6 @@ Foot nearest_foot(const std::vector<Vec3>& nodes, const Vec3& p, std::size_t fir
 /// As the nodes move little from step to step, a point's foot stays on its cylinder or goes to one beside it.
 Foot follow_foot(const std::vector<Vec3>& nodes, const Vec3& p, std::size_t cylinder) {
   return nearest_foot(nodes, p, cylinder == 0 ? 0 : cylinder - 1, std::min(cylinder + 2, nodes.size() - 1));
-}
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Robust standard deviation of the residuals about zero: 1.4826 times their median size.

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "modeling/median.hpp"
+
 namespace tubebin {
 namespace {
 
@@ -98,8 +100,7 @@ double estimate_spacing(const ViewProjection& projection, std::span<const Point>
     extent.add(images.emplace_back(projection(point)));
     ranges.push_back(images.back().range);
   }
-  std::nth_element(ranges.begin(), ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2), ranges.end());
-  const double range = ranges[ranges.size() / 2];
+  const double range = median(ranges);
 
   // With about four points a cell few cells of a surface are empty by chance (e^-4 = 2 %), and the cells that a
   // surface covers only partly are still a small part of all.

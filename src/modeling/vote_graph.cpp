@@ -31,6 +31,12 @@ VoteGraph::VoteGraph(const FilteredCloud& cloud, const Segment& segment, double 
     linked_[a].push_back(b);
     linked_[b].push_back(a);
   }
+  // The voxel of most votes is on the line for sure, where any other may be a stray that nothing links to.
+  std::uint32_t middle = 0;
+  for (std::uint32_t i = 1; i < size(); ++i)
+    if (count(i) > count(middle)) middle = i;
+  end_ = farthest(distances_from({&middle, 1}), middle);
+  distances_from_end_ = distances_from({&end_, 1});
 }
 
 std::vector<double> VoteGraph::distances_from(std::span<const std::uint32_t> sources) const {
@@ -55,19 +61,10 @@ std::vector<double> VoteGraph::distances_from(std::span<const std::uint32_t> sou
   return distance;
 }
 
-std::uint32_t VoteGraph::far_end() const {
-  // The voxel of most votes is on the line for sure, where any other may be a stray that nothing links to.
-  std::uint32_t middle = 0;
-  for (std::uint32_t i = 1; i < size(); ++i)
-    if (count(i) > count(middle)) middle = i;
-  return farthest(distances_from({&middle, 1}), middle);
-}
-
 std::vector<std::uint32_t> VoteGraph::longest_way() const {
-  const std::uint32_t start = far_end();
-  const std::vector<double> distance = distances_from({&start, 1});
-  std::vector<std::uint32_t> way = {farthest(distance, start)};
-  while (way.back() != start) {
+  const std::vector<double>& distance = distances_from_end_;
+  std::vector<std::uint32_t> way = {farthest(distance, end_)};
+  while (way.back() != end_) {
     std::uint32_t before = way.back();
     for (const std::uint32_t j : linked_[way.back()])
       if (distance[j] < distance[before]) before = j;

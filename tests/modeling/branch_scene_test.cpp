@@ -53,20 +53,20 @@ TEST(Branches, SegmentsOfTreesAreTakenApartAndThoseOfChainsAreNot) {
     const FilteredCloud filtered = filter(input, view_of(input), {}, kRadius, 1);
     const std::vector<Segment> segments = segment_by_votes(filtered, kRadius);
     ASSERT_EQ(segments.size(), 1u);
-    const std::vector<Segment> stretches = split_branches(filtered, segments[0], kRadius);
+    const std::vector<Stretch> stretches = split_branches(filtered, segments[0], kRadius);
     EXPECT_EQ(stretches.size(), is_tree ? 3u : 1u);
     std::size_t points = 0;
-    for (const Segment& stretch : stretches) points += stretch.size();
+    for (const Stretch& stretch : stretches) points += stretch.segment.size();
     EXPECT_EQ(points, segments[0].size());
   }
 }
 
 TEST(Branches, StartOnASideButNotAtAnEnd) {
   const std::vector<Vec3> nodes = {{0, 0, 0}, {0.2, 0, 0}};
-  EXPECT_TRUE(starts_on_side({0.1, 0.6 * kRadius, 0}, {0, -1, 0}, nodes, kRadius));
-  EXPECT_FALSE(starts_on_side({0.1, 1.1 * kRadius, 0}, {0, -1, 0}, nodes, kRadius));  // another tube's end may touch it
-  EXPECT_FALSE(starts_on_side({0.1, 0.8 * kRadius, 0}, {0, 1, 0}, nodes, kRadius));   // leads away
-  EXPECT_FALSE(starts_on_side({0.195, 0.4 * kRadius, 0}, {0, -1, 0}, nodes, kRadius));
+  EXPECT_TRUE(place_on_side({0.1, 0.6 * kRadius, 0}, {0, -1, 0}, nodes, kRadius));
+  EXPECT_FALSE(place_on_side({0.1, 1.1 * kRadius, 0}, {0, -1, 0}, nodes, kRadius));  // another tube's end may touch it
+  EXPECT_FALSE(place_on_side({0.1, 0.8 * kRadius, 0}, {0, 1, 0}, nodes, kRadius));   // leads away
+  EXPECT_FALSE(place_on_side({0.195, 0.4 * kRadius, 0}, {0, -1, 0}, nodes, kRadius));
 }
 
 TEST(Branches, PublishedSetC) {

@@ -5,12 +5,19 @@
 
 #include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/tube_model.hpp"
+#include "tubebin/modeling/vote_graph.hpp"
 
 namespace tubebin {
 
+/// A segment that does not branch.
+struct Stretch {
+  Segment segment;
+  VoteGraph graph;
+};
+
 /// The votes of a branching tube hang together (segment_by_votes), and so may those of tubes that meet where normals
 /// mix. The longest way through a segment's votes is one stretch of tube; what lies off it and is long enough to be
-/// another stretch is a segment of its own, taken apart in the same way. A segment without branches stays as it is.
-std::vector<Segment> split_branches(const FilteredCloud& cloud, const Segment& segment, double radius);
+/// another stretch is a segment of its own, taken apart in the same way. A segment without branches stays whole.
+std::vector<Stretch> split_branches(const FilteredCloud& cloud, const Segment& segment, double radius);
 
 }  // namespace tubebin

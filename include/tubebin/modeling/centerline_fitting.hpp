@@ -4,16 +4,17 @@
 #include <optional>
 #include <span>
 
+#include "tubebin/modeling/branch_splitting.hpp"
 #include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/surface_fitting.hpp"
 #include "tubebin/modeling/tube_model.hpp"
 
 namespace tubebin {
 
-/// Fits consecutive cylinders of the known radius to a segment: its votes make a curve, the curve is cut where it
+/// Fits consecutive cylinders of the known radius to a stretch: its votes make a curve, the curve is cut where it
 /// bends, the nodes minimize the points' distances to the surface, and the ends grow as far as points show them, also
-/// those `loose` ones that no segment holds. Nothing results from a segment that is no stretch of a tube.
-std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Segment& segment,
+/// those `loose` ones that no segment holds. Nothing results from votes that are no tube's.
+std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Stretch& stretch,
                                         std::span<const SurfacePoint> loose, double radius, const Vec3& viewpoint);
 
 }  // namespace tubebin

@@ -26,13 +26,16 @@ class VoteGraph {
   /// Length of the shortest way from each voxel to the nearest of `sources`, metres; infinite where there is none.
   std::vector<double> distances_from(std::span<const std::uint32_t> sources) const;
   /// One end of the longest way through the part that holds most votes: the farthest voxel from any is an end.
-  std::uint32_t far_end() const;
+  std::uint32_t end() const { return end_; }
+  const std::vector<double>& distances_from_end() const { return distances_from_end_; }
   /// The voxels along that way.
   std::vector<std::uint32_t> longest_way() const;
 
  private:
   VoteVoxels voxels_;
   std::vector<std::vector<std::uint32_t>> linked_;
+  std::uint32_t end_ = 0;
+  std::vector<double> distances_from_end_;
 };
 
 }  // namespace tubebin
