@@ -30,19 +30,35 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+/// Every so many of the points, that they lie a quarter of `radius` apart: then a stretch of tube still has some ten
+/// votes in a voxel of centreline_segmentation, and all of the modelling costs far less.
+FilteredCloud thinned(const FilteredCloud& cloud, double radius) {
+  const double apart = radius / 4.0 / cloud.spacing;
+  const auto stride = static_cast<std::size_t>(std::max(apart * apart, 1.0));
+  FilteredCloud sample;
+  sample.spacing = cloud.spacing * std::sqrt(static_cast<double>(stride));
+  for (std::size_t i = 0; i < cloud.points.size(); i += stride) {
+    sample.source.push_back(cloud.source[i]);
+    sample.points.push_back(cloud.points[i]);
+    sample.normals.push_back(cloud.normals[i]);
+  }
+  return sample;
+}
+
 /// From the normals at first, then from what the points about the longest pieces say.
 double estimate_radius_of(const FilteredCloud& cloud, const ViewProjection& projection) {
   constexpr std::size_t kPieces = 5;
   const double first = estimate_radius(cloud.points, cloud.normals, projection, cloud.spacing);
   if (first <= 0.0) return 0.0;
-  auto segments = segment_by_votes(cloud, first);
+  const FilteredCloud sample = thinned(cloud, first);
+  auto segments = segment_by_votes(sample, first);
   std::sort(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) { return a.size() > b.size(); });
   const Vec3 viewpoint = projection.viewpoint().cast<double>();
   std::vector<TubePiece> pieces;
   for (std::size_t k = 0; k < segments.size() && pieces.size() < kPieces; ++k)
-    if (auto piece = fit_centerline(cloud, {segments[k], VoteGraph(cloud, segments[k], first)}, {}, first, viewpoint))
+    if (auto piece = fit_centerline(sample, {segments[k], VoteGraph(sample, segments[k], first)}, {}, first, viewpoint))
       pieces.push_back(std::move(*piece));
-  return refine_radius(pieces, cloud.points, first);
+  return refine_radius(pieces, sample.points, first);
 }
 
 /// Where points are sparse, normals from as many as a known radius would not let in are too flat: the radius that they

@@ -31,6 +31,48 @@ double cylinder_curvature(const Point& p, const Point& n, const std::vector<std:
   return k(1) > 0.0 && std::abs(k(0)) < 0.3 * k(1) ? k(1) : 0.0;
 }
 
+/// A radius and how much it counts: 1 / variance.
+struct MeasuredRadius {
+  double radius = 0.0, weight = 0.0;
+};
+
+/// Of the circle about the origin, more or less, from which the points' distances have the least squares:
+/// Gauss-Newton from `radius`. (The algebraic fit, which is linear, makes circles too small where there is noise.)
+/// A narrow arc says little of its radius, and its variance shows it.
+MeasuredRadius fit_circle(const std::vector<Eigen::Vector2d>& points, double radius) {
+  constexpr int kSteps = 4;
+  const auto count = static_cast<double>(points.size());
+  Vec3 circle(0.0, 0.0, radius);  // centre and radius
+  double variance = 0.0;
+  for (int step = 0; step < kSteps; ++step) {
+    Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
+    Vec3 right = Vec3::Zero();
+    double squares = 0.0;
+    for (const Eigen::Vector2d& p : points) {
+      const Eigen::Vector2d offset = p - circle.head<2>();
+      const double distance = std::max(offset.norm(), 1e-12), residual = distance - circle.z();
+      const Vec3 row(offset.x() / distance, offset.y() / distance, 1.0);
+      normal_matrix += row * row.transpose();
+      right += residual * row;
+      squares += residual * residual;
+    }
+    const auto factors = normal_matrix.ldlt();
+    circle += factors.solve(right);
+    variance = squares / count * factors.solve(Vec3::UnitZ()).z();
+  }
+  return {circle.z(), 1.0 / std::max(variance, 1e-18)};
+}
+
+/// The radius that as much weight lies below as above.
+double weighted_median(std::vector<MeasuredRadius> radii) {
+  std::sort(radii.begin(), radii.end(), [](const auto& a, const auto& b) { return a.radius < b.radius; });
+  double half = 0.0;
+  for (const MeasuredRadius& r : radii) half += r.weight / 2.0;
+  std::size_t k = 0;
+  for (double below = radii[0].weight; below < half; below += radii[k].weight) ++k;
+  return radii[k].radius;
+}
+
 }  // namespace
 
 double estimate_radius(const std::vector<Point>& points, const std::vector<Point>& normals,
@@ -64,33 +106,23 @@ double estimate_radius(const std::vector<Point>& points, const std::vector<Point
 }
 
 double refine_radius(const std::vector<TubePiece>& pieces, const std::vector<Point>& points, double radius) {
-  std::vector<double> radii;
+  std::vector<MeasuredRadius> radii;
   for (const TubePiece& piece : pieces)
     for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
       const Vec3 start = piece.nodes[k], along = piece.nodes[k + 1] - start;
       const double length = along.norm();
       if (length < 2.0 * radius) continue;
       const Vec3 axis = along / length, u = axis.unitOrthogonal(), v = axis.cross(u);
-      // x^2 + y^2 = 2 a x + 2 b y + c, linear in (a, b, c); r^2 = c + a^2 + b^2.
-      Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
-      Vec3 right = Vec3::Zero();
-      std::size_t count = 0;
+      std::vector<Eigen::Vector2d> across;
       for (const std::uint32_t i : piece.points) {
         const Vec3 offset = points[i].cast<double>() - start;
         const double t = offset.dot(axis);
-        const double x = offset.dot(u), y = offset.dot(v);
-        if (t < 0.0 || t > length || std::abs(std::hypot(x, y) - radius) > radius / 4.0) continue;
-        const Vec3 row(2.0 * x, 2.0 * y, 1.0);
-        normal_matrix += row * row.transpose();
-        right += (x * x + y * y) * row;
-        ++count;
+        const Eigen::Vector2d p(offset.dot(u), offset.dot(v));
+        if (t >= 0.0 && t <= length && std::abs(p.norm() - radius) < radius / 4.0) across.push_back(p);
       }
-      if (count < 30) continue;
-      const Vec3 circle = normal_matrix.ldlt().solve(right);
-      const double squared = circle.z() + circle.x() * circle.x() + circle.y() * circle.y();
-      if (squared > 0.0) radii.push_back(std::sqrt(squared));
+      if (across.size() >= 30) radii.push_back(fit_circle(across, radius));
     }
-  return radii.empty() ? radius : median(radii);
+  return radii.empty() ? radius : weighted_median(std::move(radii));
 }
 
 }  // namespace tubebin
