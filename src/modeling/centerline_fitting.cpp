@@ -51,15 +51,22 @@ Vec3 tangent(const std::vector<Vec3>& curve, std::size_t i) {
 /// Finds each vote's place along the curve.
 void place_along(const std::vector<Vec3>& curve, std::vector<Vote>& votes) {
   std::vector<double> arclength = {0.0};
-  for (std::size_t i = 1; i < curve.size(); ++i)
-    arclength.push_back(arclength.back() + (curve[i] - curve[i - 1]).norm());
+  double longest = 0.0;
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    const double length = (curve[i] - curve[i - 1]).norm();
+    arclength.push_back(arclength.back() + length);
+    longest = std::max(longest, length);
+  }
+  std::size_t sample = 0;  // begins with the last vote's, which is near
   for (Vote& vote : votes) {
-    vote.sample = 0;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < curve.size(); ++i) {
-      const double squared = (vote.center - curve[i]).squaredNorm();
-      if (squared < nearest) nearest = squared, vote.sample = i;
+    double nearest = (vote.center - curve[sample]).norm();
+    for (std::size_t i = 0; i < curve.size();) {
+      const double distance = (vote.center - curve[i]).norm();
+      if (distance < nearest) nearest = distance, sample = i;
+      // As many samples on, the curve can have come as near as the nearest, not before.
+      i += static_cast<std::size_t>((distance - nearest) / longest) + 1;
     }
+    vote.sample = sample;
     vote.arclength = arclength[vote.sample] + (vote.center - curve[vote.sample]).dot(tangent(curve, vote.sample));
   }
 }
@@ -173,12 +180,13 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Stretc
   const Segment& segment = stretch.segment;
   // Some hundred votes make a curve as well as all would: its error falls below a tenth of their scatter.
   constexpr std::size_t kVotes = 800;
+  const std::size_t stride = segment.size() / kVotes + 1;
   std::vector<Vote> votes;
   std::vector<SurfacePoint> surface, own;
   for (std::size_t k = 0; k < segment.size(); ++k) {
     const Vec3 p = cloud.points[segment[k]].cast<double>(), n = cloud.normals[segment[k]].cast<double>();
     own.push_back({p, n});
-    if (k % (segment.size() / kVotes + 1) != 0) continue;
+    if (k % stride != 0) continue;
     surface.push_back({p, n});
     votes.push_back({.point = p, .normal = n, .center = p - radius * n});
   }
@@ -206,6 +214,7 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Stretc
     std::vector<Vec3> nodes = {piece.nodes.front()};
     simplify(piece.nodes, 0, piece.nodes.size() - 1, radius / 50.0, nodes);
     drop_joints_at_ends(nodes, radius);
+    if (round > 0 && nodes.size() == piece.nodes.size()) break;
     piece.nodes = std::move(nodes);
     fit_surface(piece.nodes, surface, radius);
   }

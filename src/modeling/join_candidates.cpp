@@ -70,6 +70,12 @@ Eigen::AlignedBox3d box_of(const std::vector<Vec3>& nodes) {
   return box;
 }
 
+double longest_step(const std::vector<Vec3>& curve) {
+  double squared = 0.0;
+  for (std::size_t i = 1; i < curve.size(); ++i) squared = std::max(squared, (curve[i] - curve[i - 1]).squaredNorm());
+  return std::sqrt(squared);
+}
+
 /// What the many bridges ask of each piece.
 struct Obstacle {
   const std::vector<Vec3>& nodes;
@@ -95,17 +101,22 @@ std::vector<Obstacle> obstacles_of(const std::vector<TubePiece>& pieces) {
 double collision_cost(const std::vector<Vec3>& bridge, const std::vector<Obstacle>& obstacles, std::size_t piece_a,
                       std::size_t piece_b, double bending_rate, double radius) {
   const double gap = (bridge.back() - bridge.front()).norm();
+  const double sigma = std::hypot(0.2 * radius, std::sqrt(bending_rate * gap * gap * gap / 192.0));
+  const double reach = 2.0 * radius, step = longest_step(bridge);
   const Eigen::AlignedBox3d own_box = box_of(bridge);
   double cost = 0.0;
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     const Obstacle& other = obstacles[k];
     if (k == piece_a || k == piece_b || other.is_fragment) continue;
-    if (own_box.squaredExteriorDistance(other.box) > 4.0 * radius * radius) continue;
+    if (own_box.squaredExteriorDistance(other.box) > reach * reach) continue;
     double deepest = 0.0;
-    for (const Vec3& p : bridge)
-      if (other.box.squaredExteriorDistance(p) < 4.0 * radius * radius)
-        deepest = std::max(deepest, 2.0 * radius - distance_to_polyline(p, other.nodes));
-    const double sigma = std::hypot(0.2 * radius, std::sqrt(bending_rate * gap * gap * gap / 192.0));
+    for (std::size_t i = 0; i < bridge.size();) {
+      double distance = other.box.exteriorDistance(bridge[i]);
+      if (distance < reach - deepest) distance = distance_to_polyline(bridge[i], other.nodes);
+      deepest = std::max(deepest, reach - distance);
+      // As many samples on, the bridge can have come nearer than it has been, not before.
+      i += static_cast<std::size_t>((distance - (reach - deepest)) / step) + 1;
+    }
     cost += 0.5 * deepest * deepest / (sigma * sigma);
     if (cost > kCostLimit) break;
   }

@@ -91,9 +91,10 @@ void for_each_neighborhood(const ViewProjection& projection, std::span<const Poi
     // A radian is 1 + (u^2 + v^2) / 4 units of the stereographic plane.
     const float units = r / std::max(image.range, r) * (1.0f + 0.25f * (image.u * image.u + image.v * image.v));
     const int reach = static_cast<int>(std::ceil(units / cell));
+    const int middle_row = grid.row(i), column = grid.column(i);
     runs.clear();
-    for (int row = grid.row(i) - reach; row <= grid.row(i) + reach; ++row)
-      if (const Run run = grid.range(row, grid.column(i) - reach, grid.column(i) + reach); run.first < run.second)
+    for (int row = middle_row - reach; row <= middle_row + reach; ++row)
+      if (const Run run = grid.range(row, column - reach, column + reach); run.first < run.second)
         runs.push_back(run);
     visit(i, [&](float wider) {
       Moments moments;

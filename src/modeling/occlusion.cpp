@@ -47,6 +47,7 @@ bool OcclusionTest::in_bin_solid(const Vec3& point) const {
 }
 
 StretchEvidence OcclusionTest::around(const Vec3& center, const Vec3& direction) const {
+  if (in_bin_solid(center)) return {.hidden = 0.0, .surface = 0.0, .empty = 1.0};
   StretchEvidence sum;
   const Vec3 to_viewpoint = (viewpoint_ - center).normalized();
   const Vec3 up = (to_viewpoint - to_viewpoint.dot(direction) * direction).normalized();
@@ -55,10 +56,6 @@ StretchEvidence OcclusionTest::around(const Vec3& center, const Vec3& direction)
   // above the noise, and far below the tube's thickness by which a floor or another tube lies behind.
   for (const double across : {-0.5, 0.0, 0.5}) {
     const Vec3 surface = center + radius_ * (across * side + std::sqrt(1.0 - across * across) * up);
-    if (in_bin_solid(center)) {
-      sum.empty += 1.0;
-      continue;
-    }
     switch (image_.evidence(surface.cast<float>(), static_cast<float>(radius_ / 2.0))) {
       case RangeImage::Evidence::hidden:
         sum.hidden += 1.0;
@@ -77,10 +74,13 @@ StretchEvidence OcclusionTest::around(const Vec3& center, const Vec3& direction)
 double OcclusionTest::empty_part(const std::vector<Vec3>& curve, double enough) const {
   const auto samples = static_cast<double>(curve.size() - 1);
   double empty = 0.0;
-  for (std::size_t i = 0; i + 1 < curve.size() && empty < enough * samples; ++i) {
-    const Vec3 step = curve[i + 1] - curve[i];
-    empty += around(curve[i] + 0.5 * step, step.normalized()).empty;
-  }
+  // Neighbours look alike: every fourth at first finds out soonest.
+  constexpr std::size_t kStride = 4;
+  for (const std::size_t first : {0, 2, 1, 3})
+    for (std::size_t i = first; i + 1 < curve.size() && empty < enough * samples; i += kStride) {
+      const Vec3 step = curve[i + 1] - curve[i];
+      empty += around(curve[i] + 0.5 * step, step.normalized()).empty;
+    }
   return empty / samples;
 }
 

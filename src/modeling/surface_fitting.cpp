@@ -19,37 +19,48 @@ struct Foot {
   bool beyond = false;          ///< past the polyline's first or last node
 };
 
-double squared_distance_to_axis(const std::vector<Vec3>& nodes, std::size_t k, const Vec3& p) {
-  const Vec3 axis = nodes[k + 1] - nodes[k], offset = p - nodes[k];
-  const double t = std::clamp(offset.dot(axis) / std::max(axis.squaredNorm(), 1e-18), 0.0, 1.0);
-  return (offset - t * axis).squaredNorm();
-}
+/// A cylinder's axis, ready for the many points.
+struct Axis {
+  Vec3 start, along;
+  double inverse_squared;  ///< 1 / length^2
 
-Foot foot_on_cylinder(const std::vector<Vec3>& nodes, std::size_t k, const Vec3& p) {
-  const Vec3 axis = nodes[k + 1] - nodes[k];
-  const double t = (p - nodes[k]).dot(axis) / std::max(axis.squaredNorm(), 1e-18);
-  Foot foot{.cylinder = k, .t = std::clamp(t, 0.0, 1.0)};
-  foot.beyond = (k == 0 && t < 0.0) || (k + 2 == nodes.size() && t > 1.0);
-  const Vec3 offset = p - (nodes[k] + foot.t * axis);
-  foot.distance = offset.norm();
-  foot.outward = offset / std::max(foot.distance, 1e-12);
-  return foot;
+  double place_of(const Vec3& p) const { return (p - start).dot(along) * inverse_squared; }
+  double squared_distance(const Vec3& p) const {
+    const Vec3 offset = p - start;
+    const double t = std::clamp(offset.dot(along) * inverse_squared, 0.0, 1.0);
+    return (offset - t * along).squaredNorm();
+  }
+};
+
+std::vector<Axis> axes_of(const std::vector<Vec3>& nodes) {
+  std::vector<Axis> axes;
+  for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+    const Vec3 along = nodes[k + 1] - nodes[k];
+    axes.push_back({nodes[k], along, 1.0 / std::max(along.squaredNorm(), 1e-18)});
+  }
+  return axes;
 }
 
 /// On the nearest of the cylinders [first, last).
-Foot nearest_foot(const std::vector<Vec3>& nodes, const Vec3& p, std::size_t first, std::size_t last) {
+Foot nearest_foot(const std::vector<Axis>& axes, const Vec3& p, std::size_t first, std::size_t last) {
   std::size_t best = first;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t k = first; k < last; ++k) {
-    const double squared = squared_distance_to_axis(nodes, k, p);
+    const double squared = axes[k].squared_distance(p);
     if (squared < nearest) nearest = squared, best = k;
   }
-  return foot_on_cylinder(nodes, best, p);
+  const Axis& axis = axes[best];
+  const double t = axis.place_of(p);
+  Foot foot{.cylinder = best, .t = std::clamp(t, 0.0, 1.0)};
+  foot.beyond = (best == 0 && t < 0.0) || (best + 1 == axes.size() && t > 1.0);
+  foot.distance = std::sqrt(nearest);
+  foot.outward = (p - axis.start - foot.t * axis.along) / std::max(foot.distance, 1e-12);
+  return foot;
 }
 
 /// As the nodes move little from step to step, a point's foot stays on its cylinder or goes to one beside it.
-Foot follow_foot(const std::vector<Vec3>& nodes, const Vec3& p, std::size_t cylinder) {
-  return nearest_foot(nodes, p, cylinder == 0 ? 0 : cylinder - 1, std::min(cylinder + 2, nodes.size() - 1));
+Foot follow_foot(const std::vector<Axis>& axes, const Vec3& p, std::size_t cylinder) {
+  return nearest_foot(axes, p, cylinder == 0 ? 0 : cylinder - 1, std::min(cylinder + 2, axes.size()));
 }
 
 /// Robust standard deviation of the residuals about zero: 1.4826 times their median size.
@@ -103,9 +114,10 @@ SurfaceFit fit_surface(std::vector<Vec3>& nodes, std::span<const SurfacePoint> p
   std::vector<Foot> feet(points.size());
   double sigma = 0.0;
   for (int i = 0;; ++i) {
+    const std::vector<Axis> axes = axes_of(nodes);
     for (std::size_t k = 0; k < points.size(); ++k)
-      feet[k] = i == 0 ? nearest_foot(nodes, points[k].position, 0, nodes.size() - 1)
-                       : follow_foot(nodes, points[k].position, feet[k].cylinder);
+      feet[k] = i == 0 ? nearest_foot(axes, points[k].position, 0, axes.size())
+                       : follow_foot(axes, points[k].position, feet[k].cylinder);
     sigma = robust_sigma(feet, radius);
     // Tukey's constant for 95 % efficiency; never so narrow that float rounding decides, never wider than half the
     // radius, beyond which a point is not on this surface.

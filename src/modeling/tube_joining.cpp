@@ -73,15 +73,15 @@ class Joiner {
     }
     drop_dominated();
     std::vector<PathCandidate> paths;
-    for (const Chain& chain : chains_) {
-      paths.push_back(chain.path);
+    for (Chain& chain : chains_) {
+      paths.push_back(std::move(chain.path));
       paths.back().places = chain.joins;
       for (const std::uint32_t j : chain.joins)
         paths.back().excludes.insert(paths.back().excludes.end(), collides_[j].begin(), collides_[j].end());
     }
     std::vector<Chain> chosen;
     for (const std::uint32_t c : cheapest_path_cover(pieces_.size(), paths, joins_.size(), kNodeLimit))
-      chosen.push_back(chains_[c]);
+      chosen.push_back(std::move(chains_[c]));
     chains_ = std::move(chosen);
   }
 
@@ -258,9 +258,11 @@ class Joiner {
       }
       return false;
     };
+    std::vector<bool> is_dominated;
+    for (const Chain& chain : chains_) is_dominated.push_back(better_cut(chain));
     std::vector<Chain> kept;
-    for (const Chain& chain : chains_)
-      if (!better_cut(chain)) kept.push_back(chain);
+    for (std::size_t c = 0; c < chains_.size(); ++c)
+      if (!is_dominated[c]) kept.push_back(std::move(chains_[c]));
     chains_ = std::move(kept);
   }
 
