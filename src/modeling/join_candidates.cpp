@@ -70,12 +70,6 @@ Eigen::AlignedBox3d box_of(const std::vector<Vec3>& nodes) {
   return box;
 }
 
-double longest_step(const std::vector<Vec3>& curve) {
-  double squared = 0.0;
-  for (std::size_t i = 1; i < curve.size(); ++i) squared = std::max(squared, (curve[i] - curve[i - 1]).squaredNorm());
-  return std::sqrt(squared);
-}
-
 /// What the many bridges ask of each piece.
 struct Obstacle {
   const std::vector<Vec3>& nodes;

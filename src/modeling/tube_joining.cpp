@@ -281,21 +281,30 @@ class Joiner {
     std::vector<Eigen::AlignedBox3d> boxes(joins_.size());
     for (std::size_t i = 0; i < joins_.size(); ++i)
       for (const Vec3& p : joins_[i].bridge) boxes[i].extend(p);
+    std::vector<double> steps;
+    for (const JoinCandidate& join : joins_) steps.push_back(longest_step(join.bridge));
     for (std::uint32_t i = 0; i < joins_.size(); ++i)
       for (std::uint32_t j = 0; j < i; ++j)
         if (boxes[i].squaredExteriorDistance(boxes[j]) < radius_ * radius_ &&
-            bridges_meet(joins_[i].bridge, joins_[j].bridge, boxes[j])) {
+            bridges_meet(joins_[i].bridge, joins_[j].bridge, boxes[j], std::max(steps[i], steps[j]))) {
           collides_[i].push_back(j);
           collides_[j].push_back(i);
         }
   }
 
   /// Less than a radius apart is no matter of the bridges' uncertain course.
-  bool bridges_meet(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Eigen::AlignedBox3d& box_b) const {
-    for (const Vec3& p : a) {
-      if (box_b.squaredExteriorDistance(p) >= radius_ * radius_) continue;
-      for (const Vec3& q : b)
-        if ((p - q).squaredNorm() < radius_ * radius_) return true;
+  bool bridges_meet(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Eigen::AlignedBox3d& box_b,
+                    double longest_step) const {
+    // The next so many samples cannot be nearer than a radius, since none is farther from the one before than a step.
+    const auto skip = [&](double distance) { return static_cast<std::size_t>((distance - radius_) / longest_step) + 1; };
+    for (std::size_t i = 0; i < a.size();) {
+      double nearest = box_b.exteriorDistance(a[i]);
+      for (std::size_t j = 0; nearest < radius_ && j < b.size();) {
+        const double distance = (a[i] - b[j]).norm();
+        if (distance < radius_) return true;
+        j += skip(distance);
+      }
+      i += skip(std::max(nearest, radius_));
     }
     return false;
   }

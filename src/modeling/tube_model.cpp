@@ -11,6 +11,12 @@ double polyline_length(const std::vector<Vec3>& nodes) {
   return sum;
 }
 
+double longest_step(const std::vector<Vec3>& nodes) {
+  double squared = 0.0;
+  for (std::size_t i = 1; i < nodes.size(); ++i) squared = std::max(squared, (nodes[i] - nodes[i - 1]).squaredNorm());
+  return std::sqrt(squared);
+}
+
 Vec3 nearest_on_polyline(const Vec3& point, const std::vector<Vec3>& nodes) {
   Vec3 nearest = nodes.front();
   for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {

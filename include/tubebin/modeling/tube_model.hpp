@@ -39,6 +39,9 @@ struct TubeModel {
 /// Sum of the distances of consecutive nodes, metres.
 double polyline_length(const std::vector<Vec3>& nodes);
 
+/// The largest distance of consecutive nodes, metres.
+double longest_step(const std::vector<Vec3>& nodes);
+
 /// The place of a polyline that is nearest to a point.
 Vec3 nearest_on_polyline(const Vec3& point, const std::vector<Vec3>& nodes);
 
