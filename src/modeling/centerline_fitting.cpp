@@ -57,14 +57,15 @@ void place_along(const std::vector<Vec3>& curve, std::vector<Vote>& votes) {
     arclength.push_back(arclength.back() + length);
     longest = std::max(longest, length);
   }
+  constexpr std::size_t kSkip = 8;
   std::size_t sample = 0;  // begins with the last vote's, which is near
   for (Vote& vote : votes) {
-    double nearest = (vote.center - curve[sample]).norm();
+    double nearest = (vote.center - curve[sample]).squaredNorm();
+    const double far = std::sqrt(nearest) + kSkip * longest;
     for (std::size_t i = 0; i < curve.size();) {
-      const double distance = (vote.center - curve[i]).norm();
-      if (distance < nearest) nearest = distance, sample = i;
-      // As many samples on, the curve can have come as near as the nearest, not before.
-      i += static_cast<std::size_t>((distance - nearest) / longest) + 1;
+      const double squared = (vote.center - curve[i]).squaredNorm();
+      if (squared < nearest) nearest = squared, sample = i;
+      i += squared > far * far ? kSkip : 1;  // the curve comes no nearer before
     }
     vote.sample = sample;
     vote.arclength = arclength[vote.sample] + (vote.center - curve[vote.sample]).dot(tangent(curve, vote.sample));

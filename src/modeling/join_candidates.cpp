@@ -10,8 +10,6 @@
 namespace tubebin {
 namespace {
 
-/// A join is ruled out where the scan is e^9 times likelier without it.
-constexpr double kCostLimit = 9.0;
 /// log of how seldom (1 in 100) a place that a tube takes up is measured as empty: at silhouettes, by a bend of the
 /// hidden stretch.
 constexpr double kEmptyCost = 4.6;
@@ -92,8 +90,9 @@ std::vector<Obstacle> obstacles_of(const std::vector<TubePiece>& pieces) {
 
 /// Two tubes cannot occupy one place: how far the bridge comes nearer than two radii to another piece's centreline,
 /// against how well its course is known (between its ends, the random walk's deviation q D^3 / 192 at the middle).
+/// Not summed up beyond `limit`.
 double collision_cost(const std::vector<Vec3>& bridge, const std::vector<Obstacle>& obstacles, std::size_t piece_a,
-                      std::size_t piece_b, double bending_rate, double radius) {
+                      std::size_t piece_b, double bending_rate, double radius, double limit) {
   const double gap = (bridge.back() - bridge.front()).norm();
   const double sigma = std::hypot(0.2 * radius, std::sqrt(bending_rate * gap * gap * gap / 192.0));
   const double reach = 2.0 * radius, step = longest_step(bridge);
@@ -112,7 +111,7 @@ double collision_cost(const std::vector<Vec3>& bridge, const std::vector<Obstacl
       i += static_cast<std::size_t>((distance - (reach - deepest)) / step) + 1;
     }
     cost += 0.5 * deepest * deepest / (sigma * sigma);
-    if (cost > kCostLimit) break;
+    if (cost > limit) break;
   }
   return cost;
 }
@@ -154,17 +153,17 @@ struct Pair {
 };
 
 std::vector<Pair> plausible_pairs(const std::vector<PieceEnd>& ends, const std::vector<Obstacle>& obstacles,
-                                  double bending_rate, double length_limit, double radius) {
+                                  double bending_rate, const JoinLimits& limits, double radius) {
   const double density = static_cast<double>(ends.size()) / bounding_volume(ends, radius);
   std::vector<Pair> pairs;
   for (std::uint32_t a = 0; a < ends.size(); ++a)
     for (std::uint32_t b = a + 1; b < ends.size(); ++b) {
       if (a / 2 == b / 2 || ends[a].is_on_side || ends[b].is_on_side) continue;
       const double gap = (ends[b].position - ends[a].position).norm();
-      if (obstacles[a / 2].length + obstacles[b / 2].length + gap > length_limit) continue;
+      if (obstacles[a / 2].length + obstacles[b / 2].length + gap > limits.length) continue;
       const double cost = shape_cost(ends[a], ends[b], bending_rate, radius, density) +
                           kEmptyCost * (ends[a].seen_free + ends[b].seen_free);
-      if (cost < kCostLimit) pairs.push_back({.end_a = a, .end_b = b, .cost = cost});
+      if (cost < limits.cost) pairs.push_back({.end_a = a, .end_b = b, .cost = cost});
     }
   return pairs;
 }
@@ -220,12 +219,12 @@ std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, cons
 
 std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
                                                 const OcclusionTest& occlusion, double bending_rate,
-                                                double length_limit, std::size_t joins_per_end) {
+                                                const JoinLimits& limits) {
   std::vector<JoinCandidate> candidates;
   if (pieces.empty()) return candidates;
   const double radius = pieces.front().radius;
   const std::vector<Obstacle> obstacles = obstacles_of(pieces);
-  std::vector<Pair> queue = plausible_pairs(ends, obstacles, bending_rate, length_limit, radius);
+  std::vector<Pair> queue = plausible_pairs(ends, obstacles, bending_rate, limits, radius);
   // Best first: a pair's cost only grows as it is looked into, so most pairs need no look at all.
   const auto later = [](const Pair& x, const Pair& y) {
     return std::tie(x.cost, x.end_a, x.end_b) > std::tie(y.cost, y.end_a, y.end_b);
@@ -237,13 +236,13 @@ std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pi
     Pair pair = queue.back();
     queue.pop_back();
     const std::uint32_t a = pair.end_a, b = pair.end_b;
-    if (joins_of_end[a] >= joins_per_end && joins_of_end[b] >= joins_per_end) continue;
+    if (joins_of_end[a] >= limits.joins_per_end && joins_of_end[b] >= limits.joins_per_end) continue;
     auto bridge = bridge_between(ends[a], ends[b], radius);
     if (!pair.is_final) {
-      pair.cost += empty_cost(bridge, occlusion, radius, kCostLimit - pair.cost);
-      if (!(pair.cost < kCostLimit)) continue;
-      pair.cost += collision_cost(bridge, obstacles, a / 2, b / 2, bending_rate, radius);
-      if (!(pair.cost < kCostLimit)) continue;
+      pair.cost += empty_cost(bridge, occlusion, radius, limits.cost - pair.cost);
+      if (!(pair.cost < limits.cost)) continue;
+      pair.cost += collision_cost(bridge, obstacles, a / 2, b / 2, bending_rate, radius, limits.cost - pair.cost);
+      if (!(pair.cost < limits.cost)) continue;
       pair.is_final = true;
       queue.push_back(pair);
       std::push_heap(queue.begin(), queue.end(), later);

@@ -94,8 +94,7 @@ void for_each_neighborhood(const ViewProjection& projection, std::span<const Poi
     const int middle_row = grid.row(i), column = grid.column(i);
     runs.clear();
     for (int row = middle_row - reach; row <= middle_row + reach; ++row)
-      if (const Run run = grid.range(row, column - reach, column + reach); run.first < run.second)
-        runs.push_back(run);
+      if (const Run run = grid.range(row, column - reach, column + reach); run.first < run.second) runs.push_back(run);
     visit(i, [&](float wider) {
       Moments moments;
       add_runs(sorted, runs, points[i], wider * wider * r * r, moments);

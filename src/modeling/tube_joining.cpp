@@ -18,6 +18,8 @@ constexpr double kHiddenEndCost = 1.0;
 constexpr double kShortCostLimit = 10.0;
 /// A fragment that no tube explains is as likely chance as not: e^-3.
 constexpr double kFragmentCostLimit = 3.0;
+/// A join is ruled out where the scan is e^9 times likelier without it.
+constexpr double kJoinCostLimit = 9.0;
 constexpr std::size_t kNodeLimit = 2000;
 /// The right join is among an end's cheapest few, or it could not be told from chance anyhow.
 constexpr std::size_t kJoinsPerEnd = 4;
@@ -39,7 +41,7 @@ struct Chain {
 class Joiner {
  public:
   Joiner(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length)
-      : pieces_(pieces), tube_length_(tube_length), radius_(pieces.front().radius) {
+      : pieces_(pieces), occlusion_(occlusion), tube_length_(tube_length), radius_(pieces.front().radius) {
     for (const TubePiece& piece : pieces) {
       lengths_.push_back(piece.length());
       piece_keys_.push_back(derive_seed({piece_keys_.size()}));
@@ -47,13 +49,7 @@ class Joiner {
     bending_rate_ = estimate_bending_rate(pieces, radius_);
     ends_ = find_piece_ends(pieces, occlusion, 40.0 * radius_);
     decide_whether_tubes_branch();
-    joins_ = find_join_candidates(pieces, ends_, occlusion, bending_rate_, longest(), kJoinsPerEnd);
-    joins_of_end_.resize(ends_.size());
-    for (std::uint32_t j = 0; j < joins_.size(); ++j) {
-      bridge_lengths_.push_back(polyline_length(joins_[j].bridge));
-      for (const std::uint32_t end : {joins_[j].end_a, joins_[j].end_b}) joins_of_end_[end].push_back(j);
-    }
-    find_colliding_joins();
+    find_joins();
   }
 
   /// The joins of the best cover under the current tube length.
@@ -125,16 +121,22 @@ class Joiner {
   void solve_with_common_length() {
     if (tubes_branch_) return;  // chains are parts of them
     tube_length_ = common_length();
-    if (tube_length_ > 0.0) return solve();
+    if (tube_length_ > 0.0) {
+      find_joins();
+      return solve();
+    }
     const std::vector<double> seen = seen_lengths();
-    const std::vector<Chain> without = chains_;
+    const std::vector<Chain> without_length = chains_;
+    const std::vector<JoinCandidate> joins_without_length = joins_;
     for (auto length = seen.rbegin(); length != seen.rend(); ++length) {
       tube_length_ = *length;
+      if (length == seen.rbegin()) find_joins();  // the longest, and so those of the others too
       solve();
       if (is_confirmed(*length)) return;
     }
     tube_length_ = 0.0;
-    chains_ = without;
+    chains_ = without_length;
+    joins_ = joins_without_length;
   }
 
   Joining result() const {
@@ -178,8 +180,6 @@ class Joiner {
     // Each chain is found from both sides: the one that starts at the lower end counts.
     if (chain.first_end < chain.last_end) keep_if_cheapest(chain);
     for (const std::uint32_t j : joins_of_end_[chain.last_end]) {
-      // Without a length to explain, a join has to be likelier than not by itself.
-      if (tube_length_ <= 0.0 && joins_[j].cost > 0.0) break;
       const std::uint32_t entered = joins_[j].end_a == chain.last_end ? joins_[j].end_b : joins_[j].end_a;
       const auto taken = [&](std::uint32_t k) {
         return std::find(chain.path.items.begin(), chain.path.items.end(), k) != chain.path.items.end();
@@ -275,9 +275,23 @@ class Joiner {
       for (PieceEnd& end : ends_) end.is_on_side = false;
   }
 
+  /// Without a length to explain, a join has to be likelier than not by itself.
+  void find_joins() {
+    joins_ = find_join_candidates(
+        pieces_, ends_, occlusion_, bending_rate_,
+        {.cost = tube_length_ > 0.0 ? kJoinCostLimit : 0.0, .length = longest(), .joins_per_end = kJoinsPerEnd});
+    bridge_lengths_.clear();
+    joins_of_end_.assign(ends_.size(), {});
+    for (std::uint32_t j = 0; j < joins_.size(); ++j) {
+      bridge_lengths_.push_back(polyline_length(joins_[j].bridge));
+      for (const std::uint32_t end : {joins_[j].end_a, joins_[j].end_b}) joins_of_end_[end].push_back(j);
+    }
+    find_colliding_joins();
+  }
+
   /// Two bridges of different tubes cannot occupy one place.
   void find_colliding_joins() {
-    collides_.resize(joins_.size());
+    collides_.assign(joins_.size(), {});
     std::vector<Eigen::AlignedBox3d> boxes(joins_.size());
     for (std::size_t i = 0; i < joins_.size(); ++i)
       for (const Vec3& p : joins_[i].bridge) boxes[i].extend(p);
@@ -296,7 +310,9 @@ class Joiner {
   bool bridges_meet(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Eigen::AlignedBox3d& box_b,
                     double longest_step) const {
     // The next so many samples cannot be nearer than a radius, since none is farther from the one before than a step.
-    const auto skip = [&](double distance) { return static_cast<std::size_t>((distance - radius_) / longest_step) + 1; };
+    const auto skip = [&](double distance) {
+      return static_cast<std::size_t>((distance - radius_) / longest_step) + 1;
+    };
     for (std::size_t i = 0; i < a.size();) {
       double nearest = box_b.exteriorDistance(a[i]);
       for (std::size_t j = 0; nearest < radius_ && j < b.size();) {
@@ -327,6 +343,7 @@ class Joiner {
   }
 
   const std::vector<TubePiece>& pieces_;
+  const OcclusionTest& occlusion_;
   double tube_length_;
   double radius_;
   double bending_rate_ = 0.0;

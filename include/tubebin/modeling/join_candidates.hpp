@@ -36,11 +36,16 @@ double estimate_bending_rate(const std::vector<TubePiece>& pieces, double radius
 std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion,
                                       double reach_limit);
 
+struct JoinLimits {
+  double cost = 0.0;    ///< nats, of a join
+  double length = 0.0;  ///< metres, of two pieces and their bridge together
+  std::size_t joins_per_end = 0;
+};
+
 /// The pairs of ends whose join the evidence does not rule out, cheapest first: of each end its `joins_per_end` cheapest,
-/// and those that are among the other end's. `length_limit`: the longest that two pieces and their bridge may be
-/// together, metres.
+/// and those that are among the other end's.
 std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
                                                 const OcclusionTest& occlusion, double bending_rate,
-                                                double length_limit, std::size_t joins_per_end);
+                                                const JoinLimits& limits);
 
 }  // namespace tubebin
