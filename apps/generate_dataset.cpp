@@ -4,8 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <optional>
 
+#include "tubebin/dataset/merge_datasets.hpp"
+#include "tubebin/dataset/shard.hpp"
 #include "tubebin/dataset/timing_table.hpp"
 #include "tubebin/dataset/verify_dataset.hpp"
 #include "tubebin/scan/scanner.hpp"
@@ -20,8 +23,15 @@ Examples:
       all scenes of the paper's set A, on all cores
   generate_dataset config/set_b.yaml --output small --tubes 1,5,10-12 --cases 3 --preview
       three scenes each of 1, 5, 10, 11 and 12 tubes, with pictures
-  generate_dataset config/set_a.yaml --output part_2 --shard 2/4
-      the second of four parts, which four machines make
+  generate_dataset config/set_a.yaml --output /shared/dataset_a --shard 2/4
+      the second of four parts, which four machines make at once; in a job array of Slurm, AWS Batch or Kubernetes,
+      --shard is not needed (docs/scale_out.md)
+  generate_dataset config/set_a.yaml --output /shared/dataset_a --shard 2/4 --pack
+      the same into one tar, /shared/dataset_a/packs/00002-of-00004.tar, instead of three files a scene
+  generate_dataset --merge dataset_a part_1 part_2 part_3 part_4
+      join the parts that were made into folders of their own; names what is missing and how to make it
+  generate_dataset --merge /shared/dataset_a
+      the same where the parts were made into one folder
   generate_dataset --verify dataset_a
       check every scene of a data set; with --repair, make damaged ones anew
 
@@ -36,9 +46,12 @@ struct Arguments {
   std::optional<int> cases;
   std::optional<std::uint64_t> seed;
   int jobs = available_cores();
-  std::string shard = "1/1";
+  std::string shard;
+  std::optional<int> shard_count;
   bool preview = false;
   bool quiet = false;
+  bool pack = false;
+  std::vector<std::string> merge;
   std::string verify;
   bool repair = false;
 
@@ -54,8 +67,14 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 1000000));
   app.add_option("--seed", arguments.seed, "Seed, instead of the configuration's")->check(CLI::NonNegativeNumber);
   app.add_option("-j,--jobs", arguments.jobs, "Worker processes")->check(CLI::Range(1, 1024))->capture_default_str();
-  app.add_option("--shard", arguments.shard, "Make only part I of N, counted from 1")->type_name("I/N");
+  app.add_option("--shard", arguments.shard,
+                 "Make only part I of N, counted from 1; without it, as the environment of a job array says")
+      ->type_name("I/N");
+  app.add_option("--shard-count", arguments.shard_count, "N, where a scheduler says I alone (Kubernetes)")
+      ->check(CLI::Range(1, 1000000))
+      ->envname("TUBEBIN_SHARD_COUNT");
   app.add_flag("--preview", arguments.preview, "Also render pictures of each scene");
+  app.add_flag("--pack", arguments.pack, "Into one tar a part, in WebDataset's layout, instead of a folder a scene");
   app.add_flag_callback(
       "--config-reference",
       [] {
@@ -67,7 +86,12 @@ void add_options(CLI::App& app, Arguments& arguments) {
   auto* verify =
       app.add_option("--verify", arguments.verify, "Check a data set instead of making one")->type_name("DIR");
   app.add_flag("--repair", arguments.repair, "Make damaged scenes anew")->needs(verify);
+  auto* merge = app.add_option("--merge", arguments.merge,
+                               "Join parts into the folder OUT, or complete OUT where they were made into it")
+                    ->type_name("OUT DIR...")
+                    ->expected(1, -1);
   verify->excludes(config)->excludes(output);
+  merge->excludes(config)->excludes(output)->excludes(verify);
 }
 
 /// For checks of values that no place in a file can be named for.
@@ -100,8 +124,10 @@ void print_summary(const GenerationReport& report, std::size_t scene_count) {
 }
 
 /// Makes the scenes and says how it went.
-int make_scenes(DatasetFolder& folder, const std::vector<SceneId>& scenes, const Arguments& arguments) {
-  const GenerationReport report = generate_dataset(folder, scenes, arguments.jobs, arguments.progress());
+int make_scenes(DatasetFolder& folder, const std::vector<SceneId>& scenes, const Shard& shard,
+                const Arguments& arguments) {
+  const std::string pack = arguments.pack ? shard.name() : "";
+  const GenerationReport report = generate_dataset(folder, scenes, arguments.jobs, arguments.progress(), pack);
   if (!arguments.quiet) print_summary(report, scenes.size());
   for (const std::string& failed : report.failed) fmt::print(stderr, "{}\n", failed);
   if (report.signal != 0) {
@@ -113,11 +139,30 @@ int make_scenes(DatasetFolder& folder, const std::vector<SceneId>& scenes, const
   return static_cast<int>(report.failed.empty() ? ExitCode::done : ExitCode::incomplete);
 }
 
+std::int64_t cost_of(const std::vector<SceneId>& scenes) {
+  std::int64_t cost = 0;
+  for (const SceneId& id : scenes) cost += generation_cost(id.tubes);
+  return cost;
+}
+
+void print_part(const ShardChoice& choice, const std::vector<SceneId>& scenes, const DatasetConfig& config) {
+  const std::vector<SceneId> all = list_scenes(config);
+  fmt::print(stderr, "Part {} of {} ({}): {} of {} scenes, {:.1f} % of the work\n", choice.shard.index,
+             choice.shard.count, choice.source, scenes.size(), all.size(),
+             100.0 * static_cast<double>(cost_of(scenes)) / static_cast<double>(cost_of(all)));
+}
+
 int generate(const Arguments& arguments) {
-  const Shard shard = parse_shard(arguments.shard);
+  const ShardChoice choice = choose_shard(arguments.shard, arguments.shard_count, std::getenv);
   const DatasetConfig config = resolve_config(arguments);
-  DatasetFolder folder(arguments.output, config);
-  return make_scenes(folder, list_scenes(config, shard), arguments);
+  const std::vector<SceneId> scenes = list_scenes(config, choice.shard);
+  if (!choice.is_sharded()) {
+    DatasetFolder folder(arguments.output, config);
+    return make_scenes(folder, scenes, {}, arguments);
+  }
+  if (!arguments.quiet) print_part(choice, scenes, config);
+  DatasetFolder folder(arguments.output, config, choice.shard);
+  return make_scenes(folder, scenes, choice.shard, arguments);
 }
 
 int repair(const VerificationReport& report, const Arguments& arguments) {
@@ -125,7 +170,7 @@ int repair(const VerificationReport& report, const Arguments& arguments) {
   check(config, whole_file(arguments.verify + "/config.yaml"));
   DatasetFolder folder(arguments.verify, config);
   forget_damage(folder, report);
-  return make_scenes(folder, report.damaged, arguments);
+  return make_scenes(folder, report.damaged, {}, arguments);
 }
 
 int verify(const Arguments& arguments) {
@@ -139,7 +184,33 @@ int verify(const Arguments& arguments) {
   return arguments.repair ? repair(report, arguments) : static_cast<int>(ExitCode::incomplete);
 }
 
-int run(const Arguments& arguments) { return arguments.verify.empty() ? generate(arguments) : verify(arguments); }
+/// Names the first few one by one.
+void print_names(const std::vector<std::string>& names) {
+  constexpr std::size_t shown = 20;
+  for (std::size_t i = 0; i < std::min(names.size(), shown); ++i) fmt::print("  {}\n", names[i]);
+  if (names.size() > shown) fmt::print("  and {} more\n", names.size() - shown);
+}
+
+int merge(const Arguments& arguments) {
+  const std::string& output = arguments.merge.front();
+  const MergeReport report = merge_datasets(output, {arguments.merge.begin() + 1, arguments.merge.end()},
+                                            arguments.jobs, arguments.progress());
+  if (report.signal != 0) {
+    fmt::print(stderr, "Interrupted; what is joined is kept. Run the same command again for the rest.\n");
+    return 128 + report.signal;
+  }
+  for (const std::string& problem : report.problems) fmt::print("{}\n", problem);
+  fmt::print("{}: {} of {} scenes are complete and sound, {} are missing\n", output, report.complete, report.scenes,
+             report.missing.size());
+  print_names(report.missing);
+  for (const std::string& command : report.commands) fmt::print("To make exactly what is missing:\n  {}\n", command);
+  return static_cast<int>(report.commands.empty() ? ExitCode::done : ExitCode::incomplete);
+}
+
+int run(const Arguments& arguments) {
+  if (!arguments.merge.empty()) return merge(arguments);
+  return arguments.verify.empty() ? generate(arguments) : verify(arguments);
+}
 
 }  // namespace
 

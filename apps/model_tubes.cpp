@@ -1,5 +1,6 @@
 /// Tubes from point clouds: one cloud, or every cloud of a data set.
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 
@@ -25,6 +26,9 @@ Examples:
       every cloud of a data set at ten ratios, for evaluate (see docs/results_format.md)
   model_tubes dataset_a --output results --method region_growing --ratios 0.3
       the paper's method, into the same results
+  model_tubes /shared/dataset_a --output /shared/results --shard 2/4
+      the second of four parts, which four machines do at once; in a job array of Slurm, AWS Batch or Kubernetes,
+      --shard is not needed (docs/scale_out.md)
 
 Run the same command again after an interruption: complete results are kept.
 Exit codes: 0 done; 1 input or output failed; 2 wrong usage or configuration; 3 finished, but some clouds could not be
@@ -43,12 +47,14 @@ struct Arguments {
   double scale = 1.0;
   int jobs = available_cores();
   int cases = 0;
+  std::string shard;
+  std::optional<int> shard_count;
   bool keep_clouds = false;
   bool quiet = false;
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("CLOUD_OR_DATASET", arguments.input, "A .pcd or .ply file, or a data set's folder")->required();
+  app.add_option("CLOUD_OR_DATASET", arguments.input, "A .pcd or .ply file, or a data set: its folder, or a .tar that --pack made")->required();
   app.add_option("-o,--output", arguments.output, "Folder of the results")->type_name("DIR")->required();
   app.add_option("-c,--config", arguments.config, "Options (YAML, see docs/modeling.md)")->type_name("modeling.yaml");
   app.add_option("--method", arguments.method, "centerline, region_growing, or both (data sets only)")
@@ -66,6 +72,12 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--cases", arguments.cases, "Only the first cases of each set and number of tubes")
       ->check(CLI::Range(1, 1000000));
+  app.add_option("--shard", arguments.shard,
+                 "Do only part I of N of a data set, counted from 1; without it, as the environment of a job array says")
+      ->type_name("I/N");
+  app.add_option("--shard-count", arguments.shard_count, "N, where a scheduler says I alone (Kubernetes)")
+      ->check(CLI::Range(1, 1000000))
+      ->envname("TUBEBIN_SHARD_COUNT");
   app.add_flag("--keep-clouds", arguments.keep_clouds, "Also write filtered.pcd and labeled.pcd of a data set's runs");
   app.add_flag_callback(
       "--config-reference",
@@ -95,8 +107,9 @@ ModelConfig resolve_config(const Arguments& arguments) {
 }
 
 int model_one(const Arguments& arguments) {
-  if (!arguments.ratios.empty() || arguments.method == "both" || arguments.keep_clouds || arguments.cases > 0)
-    throw_config_error("{} is a file: --ratios, --method both, --cases and --keep-clouds are for data sets",
+  if (!arguments.ratios.empty() || arguments.method == "both" || arguments.keep_clouds || arguments.cases > 0 ||
+      !arguments.shard.empty())
+    throw_config_error("{} is a file: --ratios, --method both, --cases, --shard and --keep-clouds are for data sets",
                        arguments.input);
   ModelConfig config = resolve_config(arguments);
   const CloudToModel input = read_cloud_to_model(arguments.input, arguments.scale);
@@ -120,6 +133,9 @@ int model_one(const Arguments& arguments) {
   return static_cast<int>(ExitCode::done);
 }
 
+/// A folder, or a pack of scenes.
+bool is_dataset(const std::string& path) { return fs::is_directory(path) || fs::path(path).extension() == ".tar"; }
+
 int model_many(const Arguments& arguments) {
   if (arguments.scale != 1.0) throw_config_error("--scale is for single files; data sets are in metres");
   if (arguments.ratio && !arguments.ratios.empty()) throw_config_error("--ratio and --ratios say the same: give one");
@@ -130,9 +146,18 @@ int model_many(const Arguments& arguments) {
                        .ratios = {config.modeling.filtering.ratio},
                        .jobs = arguments.jobs,
                        .cases = arguments.cases,
-                       .keep_clouds = arguments.keep_clouds};
+                       .keep_clouds = arguments.keep_clouds,
+                       .shard = std::nullopt};
   if (arguments.method == "both") options.methods = {ModelingMethod::centerline, ModelingMethod::region_growing};
   if (!arguments.ratios.empty()) options.ratios = parse_ratios(arguments.ratios);
+  if (const ShardChoice choice = choose_shard(arguments.shard, arguments.shard_count, std::getenv); choice.is_sharded()) {
+    options.shard = choice.shard;
+    if (!arguments.quiet)
+      options.on_dealt = [choice](std::size_t own, std::size_t all, double share) {
+        fmt::print(stderr, "Part {} of {} ({}): {} of {} clouds, {:.1f} % of the work\n", choice.shard.index,
+                   choice.shard.count, choice.source, own, all, 100.0 * share);
+      };
+  }
   const BatchReport report =
       model_dataset(options, config, arguments.quiet ? Progress::Style::none : Progress::Style::automatic);
   for (const std::string& failed : report.failed) fmt::print(stderr, "{}\n", failed);
@@ -156,7 +181,7 @@ int main(int argc, char** argv) {
   add_options(app, arguments);
   try {
     app.parse(argc, argv);
-    return fs::is_directory(arguments.input) ? model_many(arguments) : model_one(arguments);
+    return is_dataset(arguments.input) ? model_many(arguments) : model_one(arguments);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
   } catch (const ConfigError& error) {

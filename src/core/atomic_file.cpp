@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
@@ -59,6 +60,17 @@ class TemporaryFile {
     if (file_.close() != 0) fail(final_path_, "cannot be written", errno);
   }
 
+  /// A hard link is what network file systems keep to be made once. Returns false where the name is taken.
+  bool link_to_final() {
+    if (::link(temporary_path_.c_str(), final_path_.c_str()) == 0) return true;  // the temporary name goes by itself
+    if (errno == EEXIST) return false;
+    if (errno != EPERM && errno != ENOTSUP && errno != ENOSYS && errno != EMLINK)
+      fail(final_path_, "cannot be written", errno);
+    if (::access(final_path_.c_str(), F_OK) == 0) return false;
+    rename_to_final();  // a file system without hard links
+    return true;
+  }
+
   void rename_to_final() {
     if (::rename(temporary_path_.c_str(), final_path_.c_str()) != 0) fail(final_path_, "cannot be written", errno);
     temporary_path_.clear();
@@ -104,6 +116,20 @@ void write_file_atomically(const std::string& path, std::string_view bytes) {
   file.write(bytes);
   file.rename_to_final();
   sync_folder_of(path);
+}
+
+bool create_file_atomically(const std::string& path, std::string_view bytes) {
+  TemporaryFile file(path);
+  file.write(bytes);
+  if (!file.link_to_final()) return false;
+  sync_folder_of(path);
+  return true;
+}
+
+std::string process_name() {
+  std::array<char, 65> host{};
+  if (::gethostname(host.data(), host.size() - 1) != 0 || host[0] == '\0') host = {"host"};
+  return fmt::format("{}-{}", host.data(), ::getpid());
 }
 
 std::string read_file(const std::string& path) {

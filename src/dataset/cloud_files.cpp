@@ -1,7 +1,6 @@
 #include "tubebin/dataset/cloud_files.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <tuple>
 
 #include "tubebin/core/error.hpp"
@@ -9,26 +8,17 @@
 
 namespace tubebin {
 
-namespace fs = std::filesystem;
-
-std::vector<CloudFile> find_clouds(const std::string& dataset) try {
+std::vector<CloudFile> find_clouds(const DatasetFiles& files) {
   std::vector<CloudFile> clouds;
-  for (const auto& entry : fs::recursive_directory_iterator(dataset)) {
-    const fs::path& path = entry.path();
-    const fs::path scene = fs::relative(path.parent_path(), dataset);
-    const bool is_hidden = scene.filename().string().starts_with('.') && scene != ".";
-    if ((path.filename() == "cloud.pcd" || path.filename() == "cloud.ply") && !is_hidden)
-      clouds.push_back({scene.string(), path.string()});
-  }
-  if (clouds.empty()) throw_io_error("{}: holds no cloud.pcd or cloud.ply in any of its folders", dataset);
+  for (const std::string& scene : files.scenes()) clouds.push_back({scene, files.cloud_of(scene)});
+  if (clouds.empty())
+    throw_io_error("{}: holds no cloud.pcd or cloud.ply in any of its folders or packs", files.dataset());
   const auto key = [](const CloudFile& cloud) {
     const RunKey name = parse_scene_name(cloud.scene);
     return std::tuple(name.tubes, name.set, name.case_number, cloud.scene);
   };
   std::ranges::sort(clouds, {}, key);
   return clouds;
-} catch (const fs::filesystem_error& error) {
-  throw_io_error("{}: cannot be searched for clouds: {}", dataset, error.code().message());
 }
 
 }  // namespace tubebin

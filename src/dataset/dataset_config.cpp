@@ -176,6 +176,15 @@ std::vector<std::string> differences(const DatasetConfig& there, const DatasetCo
   return differing;
 }
 
+DatasetConfig unite(const DatasetConfig& there, DatasetConfig here) {
+  std::vector<int> tubes = there.tubes;
+  for (const int count : here.tubes)
+    if (std::find(tubes.begin(), tubes.end(), count) == tubes.end()) tubes.push_back(count);
+  here.tubes = tubes;
+  here.cases = std::max(there.cases, here.cases);
+  return here;
+}
+
 std::vector<int> parse_tube_counts(const std::string& text) {
   std::vector<int> counts;
   std::size_t begin = 0;

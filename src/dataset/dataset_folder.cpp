@@ -20,16 +20,6 @@ std::string make_folder(const std::string& folder) {
   return folder;
 }
 
-/// Numbers of tubes and cases of both, so that config.yaml covers every scene that was ever asked for.
-DatasetConfig unite(const DatasetConfig& there, DatasetConfig here) {
-  std::vector<int> tubes = there.tubes;
-  for (const int count : here.tubes)
-    if (std::find(tubes.begin(), tubes.end(), count) == tubes.end()) tubes.push_back(count);
-  here.tubes = tubes;
-  here.cases = std::max(there.cases, here.cases);
-  return here;
-}
-
 void refuse_if_made_otherwise(const std::string& folder, const DatasetConfig& there, const DatasetConfig& here) {
   const std::vector<std::string> differing = differences(there, here);
   if (differing.empty()) return;
@@ -39,28 +29,30 @@ void refuse_if_made_otherwise(const std::string& folder, const DatasetConfig& th
       folder, fmt::join(differing, "\n  "));
 }
 
+bool is_foreign(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return !name.starts_with('.') && !name.starts_with("config.yaml.");
+}
+
 /// A folder with other things in it was hardly meant.
 void refuse_if_foreign(const std::string& folder) {
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (!entry.path().filename().string().starts_with('.') &&
-        !entry.path().filename().string().starts_with("config.yaml."))
-      throw_config_error("{}: holds files, but no data set (config.yaml is missing); choose a new or empty folder",
-                         folder);
+  if (std::none_of(fs::directory_iterator(folder), {}, [](const auto& entry) { return is_foreign(entry.path()); }))
+    return;
+  if (fs::exists(config_path(folder))) return;  // another part of the same call was quicker
+  throw_config_error("{}: holds files, but no data set (config.yaml is missing); choose a new or empty folder", folder);
 }
 
 /// Writes config.yaml where it is missing or gains scenes, and returns what it says.
 DatasetConfig settle_config(const std::string& folder, const DatasetConfig& wanted) {
-  DatasetConfig settled = wanted;
-  std::string text_there;
-  if (fs::exists(config_path(folder))) {
-    const DatasetConfig there = read_dataset_config(folder);
-    refuse_if_made_otherwise(folder, there, wanted);
-    settled = unite(there, wanted);
-    text_there = format_config(there);
-  } else {
+  if (!fs::exists(config_path(folder))) {
     refuse_if_foreign(folder);
+    if (create_file_atomically(config_path(folder), format_config(wanted))) return wanted;
   }
-  if (format_config(settled) != text_there) write_file_atomically(config_path(folder), format_config(settled));
+  const DatasetConfig there = read_dataset_config(folder);
+  refuse_if_made_otherwise(folder, there, wanted);
+  DatasetConfig settled = unite(there, wanted);
+  if (format_config(settled) != format_config(there))
+    write_file_atomically(config_path(folder), format_config(settled));
   return settled;
 }
 
@@ -79,12 +71,27 @@ DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& con
       config_(settle_config(folder_, config)),
       store_(folder_, config_.output),
       manifest_(folder_) {
-  store_.remove_unfinished();
+  remove_unfinished();
   if (!manifest_.damaged_lines().empty()) manifest_.rewrite_without({});  // their scenes are made anew
 }
 
+DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& config, const Shard& shard)
+    : folder_(make_folder(folder)),
+      part_(list_scenes(config, shard)),
+      lock_(folder_, FolderLock::Kind::part),
+      config_(settle_config(folder_, config)),
+      store_(folder_, config_.output),
+      manifest_(folder_, shard, *part_) {
+  remove_unfinished();
+}
+
+void DatasetFolder::remove_unfinished() const {
+  if (part_) store_.remove_unfinished(*part_, SceneStore::Unfinished::only);
+  else store_.remove_unfinished(list_scenes(config_), SceneStore::Unfinished::all);
+}
+
 DatasetFolder::~DatasetFolder() try {
-  store_.remove_unfinished();
+  remove_unfinished();
 } catch (const IoError&) {  // the next run tries again
 }
 

@@ -14,6 +14,7 @@
 #include "tubebin/dataset/cloud_files.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
 #include "tubebin/dataset/manifest.hpp"
+#include "tubebin/dataset/model_cloud.hpp"
 #include "tubebin/dataset/whole_folder.hpp"
 #include "tubebin/dataset/worker_pool.hpp"
 #include "tubebin/export/formats.hpp"
@@ -52,18 +53,17 @@ struct IndexLine {
 
 struct Source {
   IndexLine line;
-  std::string cloud;
+  CloudFile cloud;
 };
 
-std::vector<Source> list_sources(const std::string& dataset) {
-  if (!fs::is_directory(dataset)) throw_io_error("{}: is no data set: not a folder", dataset);
+std::vector<Source> list_sources(const DatasetFiles& dataset) {
+  if (!fs::exists(dataset.dataset())) throw_io_error("{}: is no data set: not there", dataset.dataset());
   std::vector<Source> sources;
   for (const CloudFile& cloud : find_clouds(dataset)) {
-    if (cloud.scene == ".") throw_io_error("{}: is a single scene; give the folder of its data set", dataset);
-    const std::string path = dataset + "/" + cloud.scene + "/scene.json";
-    const std::string text = read_file(path);
-    const std::size_t tubes = parse_scene_json(text, path).scene.tubes.size();
-    sources.push_back({{cloud.scene, tubes, record_bytes(text).xxh128}, cloud.path});
+    if (cloud.scene == ".") throw_io_error("{}: is a single scene; give the folder of its data set", dataset.dataset());
+    const std::string text = dataset.read(cloud.scene, "scene.json");
+    const std::size_t tubes = parse_scene_json(text, dataset.place(cloud.scene, "scene.json")).scene.tubes.size();
+    sources.push_back({{cloud.scene, tubes, record_bytes(text).xxh128}, cloud});
   }
   return sources;
 }
@@ -122,9 +122,9 @@ void refuse_if_foreign(const std::string& output) {
 }
 
 /// Writes the index that says what the output is made from, and returns the scenes in its order.
-std::vector<Source> settle_index(const ExportOptions& options) {
+std::vector<Source> settle_index(const DatasetFiles& dataset, const ExportOptions& options) {
   const std::string path = options.output + "/index.json";
-  std::vector<Source> sources = list_sources(options.dataset);
+  std::vector<Source> sources = list_sources(dataset);
   if (fs::exists(path)) {
     sources = continue_index(path, read_index(path, options.format), std::move(sources));
   }
@@ -152,12 +152,13 @@ void write_below(const std::string& output, const Files& files) {
 }
 
 /// In a worker process.
-AttemptResult export_one(const ExportFormat& format, const std::string& output, const Source& source,
-                         const SceneEntry& entry) {
+AttemptResult export_one(const ExportFormat& format, const DatasetFiles& dataset, const std::string& output,
+                         const Source& source, const SceneEntry& entry) {
   SceneFiles files;
   try {
-    const std::string folder = fs::path(source.cloud).parent_path().string();
-    files = format.export_scene({entry, read_scene_json(folder + "/scene.json"), read_cloud(source.cloud)});
+    CloudToModel input = read_cloud_to_model(dataset, source.cloud);
+    if (!input.scene) throw_io_error("{}: is missing", dataset.place(source.cloud.scene, "scene.json"));
+    files = format.export_scene({entry, std::move(*input.scene), std::move(input.cloud)});
   } catch (const IoError& error) {
     return failed_attempt("unreadable", error.what());  // this scene's fault: the others go on
   }
@@ -195,10 +196,11 @@ ExportReport export_dataset(const ExportOptions& options, Progress::Style progre
   if (known == formats().end())
     throw_config_error("--format {}: unknown; one of {}", options.format, fmt::join(export_format_names(), ", "));
   refuse_if_foreign(options.output);
-  if (!fs::exists(options.output)) list_sources(options.dataset);  // leaves no folder where there is nothing to export
+  const DatasetFiles dataset(options.dataset);
+  if (!fs::exists(options.output)) list_sources(dataset);  // leaves no folder where there is nothing to export
   fs::create_directories(options.output);
   const FolderLock lock(options.output);
-  const std::vector<Source> sources = settle_index(options);
+  const std::vector<Source> sources = settle_index(dataset, options);
   const std::vector<SceneEntry> entries = number_scenes(sources);
   const std::unique_ptr<ExportFormat> format = known->second(options.dataset);
   remove_unfinished(options.output);
@@ -222,7 +224,7 @@ ExportReport export_dataset(const ExportOptions& options, Progress::Style progre
                           .on_tick = [&] { progress.show(); }};
   const PoolReport pool = run_jobs(
       missing, {.workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit},
-      [&](std::size_t job, int) { return export_one(*format, options.output, sources[job], entries[job]); }, events);
+      [&](std::size_t job, int) { return export_one(*format, dataset, options.output, sources[job], entries[job]); }, events);
   report.made = pool.succeeded;
   report.signal = pool.signal;
   if (report.signal == 0) {

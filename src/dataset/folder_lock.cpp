@@ -22,6 +22,8 @@ bool try_to_lock(int descriptor, FolderLock::Kind kind) {
   const int operation = (kind == FolderLock::Kind::exclusive ? LOCK_EX : LOCK_SH) | LOCK_NB;
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (flock(descriptor, operation) != 0) {
+    const bool keeps_no_locks = errno != EWOULDBLOCK && errno != EINTR;
+    if (keeps_no_locks && kind == FolderLock::Kind::part) return true;
     if (std::chrono::steady_clock::now() > deadline) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
@@ -46,9 +48,10 @@ void write_holder(int descriptor) {
 FolderLock::FolderLock(const std::string& folder, Kind kind) {
   const std::string path = folder + "/.lock";
   const bool exclusive = kind == Kind::exclusive;
-  descriptor_ = open(path.c_str(), exclusive ? O_RDWR | O_CREAT | O_CLOEXEC : O_RDONLY | O_CLOEXEC, 0666);
+  const bool reads = kind == Kind::shared;
+  descriptor_ = open(path.c_str(), reads ? O_RDONLY | O_CLOEXEC : O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) {
-    if (!exclusive) return;  // nobody ever locked it
+    if (reads) return;  // nobody ever locked it
     throw_io_error("{}: cannot be written: {}", path, std::strerror(errno));
   }
   if (!try_to_lock(descriptor_, kind)) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <numeric>
+#include <optional>
 
+#include "scene_packer.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
 
 namespace tubebin {
@@ -61,7 +63,7 @@ std::size_t GenerationReport::rejects_total() const {
 }
 
 GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<SceneId>& scenes, int jobs,
-                                  Progress::Style progress_style) {
+                                  Progress::Style progress_style, const std::string& pack) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < scenes.size(); ++i)
@@ -69,11 +71,15 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
 
   GenerationReport report;
   report.complete_before = scenes.size() - missing.size();
+  std::optional<ScenePacker> packer;
+  if (!pack.empty()) packer.emplace(folder, scenes, pack);
   Progress progress(missing.size(), "scenes", progress_style);
   const PoolEvents events{.on_finished =
                               [&](const JobOutcome& outcome) {
                                 if (outcome.succeeded) record_scene(folder, outcome);
                                 else report.failed.push_back(describe_failure(scenes[outcome.job], outcome));
+                                if (packer && outcome.succeeded) packer->add(outcome.job);
+                                else if (packer) packer->give_up(outcome.job);
                                 progress.count_done();
                               },
                           .on_failed_attempt =
@@ -88,6 +94,7 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
   const auto work = [&](std::size_t job, int attempt) { return make_scene(folder, scenes[job], attempt); };
 
   const PoolReport pool = run_jobs(missing, options, work, events);
+  if (packer) packer->finish(pool.signal == 0);
   report.signal = pool.signal;
   report.made = pool.succeeded;
   report.seconds = seconds_since(start);

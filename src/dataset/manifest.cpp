@@ -4,6 +4,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -31,6 +32,35 @@ DropFigures physics_from(const Json& json) {
           .largest_drift = json.at("largest_drift")};
 }
 
+constexpr const char* kParts = "/manifest.parts";
+
+/// Lines that programs append begin with the id, which saves parsing those of other scenes. "" where one doesn't.
+std::string id_of(const std::string& line) {
+  constexpr std::string_view start = R"({"id":")";
+  if (!line.starts_with(start)) return "";
+  return line.substr(start.size(), line.find('"', start.size()) - start.size());
+}
+
+std::vector<std::string> list_parts(const std::string& folder) {
+  std::vector<std::string> parts;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder + kParts, error))
+    if (entry.path().extension() == ".jsonl") parts.push_back(entry.path().string());
+  std::sort(parts.begin(), parts.end());
+  return parts;
+}
+
+/// A new file that no other process writes to, whatever its host.
+std::string make_part(const std::string& folder, const std::string& part) {
+  std::filesystem::create_directories(folder + kParts);
+  for (int number = 0;; ++number) {
+    const std::string path = fmt::format("{}{}/{}.{}-{}.jsonl", folder, kParts, part, process_name(), number);
+    const FileDescriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.get() >= 0) return path;
+    if (errno != EEXIST) throw_io_error("{}: cannot be written: {}", path, std::strerror(errno));
+  }
+}
+
 }  // namespace
 
 std::string format_manifest_record(const ManifestRecord& record) {
@@ -39,9 +69,10 @@ std::string format_manifest_record(const ManifestRecord& record) {
     rejected.push_back({{"attempt", attempt.attempt}, {"reason", attempt.reason}, {"detail", attempt.detail}});
   Json files = Json::object();
   for (const auto& [name, file] : record.files) files[name] = {{"bytes", file.bytes}, {"xxh128", file.xxh128}};
-  const Json json = {{"id", record.id},      {"tubes", record.tubes},     {"seed", record.seed},
+  Json json = {{"id", record.id},      {"tubes", record.tubes},     {"seed", record.seed},
                      {"rejected", rejected}, {"seconds", record.seconds}, {"physics", to_json(record.physics)},
                      {"files", files}};
+  if (!record.pack.empty()) json["pack"] = {{"file", record.pack}, {"end", record.pack_end}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -58,6 +89,10 @@ ManifestRecord parse_manifest_record(const std::string& line) {
     record.physics = physics_from(json.at("physics"));
     for (const auto& [name, file] : json.at("files").items())
       record.files[name] = {.bytes = file.at("bytes"), .xxh128 = file.at("xxh128")};
+    if (json.contains("pack")) {
+      record.pack = json["pack"].at("file");
+      record.pack_end = json["pack"].at("end");
+    }
   } catch (const nlohmann::json::exception& error) {
     throw_io_error("not a record of a scene: {}", error.what());
   }
@@ -69,21 +104,38 @@ FileRecord record_bytes(std::string_view bytes) {
   return {.bytes = bytes.size(), .xxh128 = fmt::format("{:016x}{:016x}", hash.high64, hash.low64)};
 }
 
-Manifest::Manifest(const std::string& folder) : path_(folder + "/manifest.jsonl") {
-  if (!std::filesystem::exists(path_)) return;
-  const std::string text = read_file(path_);
+Manifest::Manifest(const std::string& folder) : folder_(folder), path_(folder + "/manifest.jsonl") {
+  complete_bytes_ = read(path_, nullptr);
+  for (const std::string& part : list_parts(folder)) read(part, nullptr);
+}
+
+Manifest::Manifest(const std::string& folder, const Shard& shard, const std::vector<SceneId>& scenes)
+    : folder_(folder), part_name_(shard.name()) {
+  std::set<std::string> wanted;
+  for (const SceneId& id : scenes) wanted.insert(id.name());
+  read(folder + "/manifest.jsonl", &wanted);
+  for (const std::string& part : list_parts(folder)) read(part, &wanted);
+}
+
+std::size_t Manifest::read(const std::string& path, const std::set<std::string>* wanted) {
+  if (!std::filesystem::exists(path)) return 0;
+  const std::string text = read_file(path);
   std::size_t begin = 0;
   for (int line_number = 1; begin < text.size(); ++line_number) {
     const std::size_t end = text.find('\n', begin);
-    if (end == std::string::npos) return;  // a kill cut this line short: its scene is not recorded
+    if (end == std::string::npos) break;  // a kill cut this line short: its scene is not recorded
+    const std::string line = text.substr(begin, end - begin);
+    begin = end + 1;
+    if (wanted != nullptr && !wanted->contains(id_of(line))) continue;
     try {
-      ManifestRecord record = parse_manifest_record(text.substr(begin, end - begin));
-      records_[record.id] = std::move(record);
+      ManifestRecord record = parse_manifest_record(line);
+      ManifestRecord& known = records_[record.id];
+      if (known.pack.empty() || !record.pack.empty()) known = std::move(record);
     } catch (const IoError& error) {
-      damaged_lines_.push_back(fmt::format("{}:{}: {}", path_, line_number, error.what()));
+      damaged_lines_.push_back(fmt::format("{}:{}: {}", path, line_number, error.what()));
     }
-    begin = complete_bytes_ = end + 1;
   }
+  return begin;
 }
 
 const ManifestRecord* Manifest::find(const std::string& id) const {
@@ -92,7 +144,8 @@ const ManifestRecord* Manifest::find(const std::string& id) const {
 }
 
 void Manifest::append(const ManifestRecord& record) {
-  const FileDescriptor file(open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
+  if (path_.empty()) path_ = make_part(folder_, part_name_);
+  const FileDescriptor file(open(path_.c_str(), O_RDWR | (part_name_.empty() ? O_CREAT : 0) | O_CLOEXEC, 0666));
   const auto fail = [&] { throw_io_error("{}: cannot be written: {}", path_, std::strerror(errno)); };
   if (file.get() < 0) fail();
   const std::string line = format_manifest_record(record) + '\n';
@@ -112,7 +165,27 @@ void Manifest::rewrite_without(const std::set<std::string>& ids) {
   std::erase_if(records_, [&](const auto& entry) { return ids.contains(entry.first); });
   std::string text;
   for (const auto& [id, record] : records_) text += format_manifest_record(record) + '\n';
-  write_file_atomically(path_, text);
+  replace_all(text);
+}
+
+void Manifest::rewrite(const std::vector<SceneId>& scenes) {
+  std::string text;
+  std::map<std::string, ManifestRecord> kept;
+  for (const SceneId& id : scenes)
+    if (auto record = records_.extract(id.name())) {
+      text += format_manifest_record(record.mapped()) + '\n';
+      kept.insert(std::move(record));
+    }
+  records_ = std::move(kept);
+  replace_all(text);
+}
+
+void Manifest::replace_all(const std::string& text) {
+  write_file_atomically(folder_ + "/manifest.jsonl", text);
+  std::error_code error;
+  std::filesystem::remove_all(folder_ + kParts, error);
+  if (error) throw_io_error("{}: cannot be removed: {}", folder_ + kParts, error.message());
+  path_ = folder_ + "/manifest.jsonl";
   complete_bytes_ = text.size();
   damaged_lines_.clear();
 }

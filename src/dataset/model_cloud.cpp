@@ -69,6 +69,16 @@ CloudToModel read_cloud_to_model(const std::string& path, double scale) {
   return input;
 }
 
+CloudToModel read_cloud_to_model(const DatasetFiles& files, const CloudFile& cloud) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string path = files.place(cloud.scene, cloud.file);
+  CloudToModel input{.path = path, .cloud = parse_cloud(files.read(cloud.scene, cloud.file), path), .scene = {}};
+  if (files.has(cloud.scene, "scene.json"))
+    input.scene = parse_scene_json(files.read(cloud.scene, "scene.json"), files.place(cloud.scene, "scene.json"));
+  input.read_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return input;
+}
+
 ModelingResult model_cloud(const CloudToModel& input, const ModelConfig& config) {
   if (std::none_of(input.cloud.points.begin(), input.cloud.points.end(), is_finite))
     throw_io_error("{}: has no finite point", input.path);

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
@@ -25,8 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kRatiosMax = 1000;
-
 const char* name_of(ModelingMethod method) {
   return method == ModelingMethod::centerline ? "centerline" : "region_growing";
 }
@@ -34,7 +31,7 @@ const char* name_of(ModelingMethod method) {
 /// One cloud by one method at one ratio.
 struct Run {
   std::string scene;  ///< "A10/007"
-  std::string cloud;  ///< its file
+  std::string cloud;  ///< the name of its file
   ModelingMethod method = ModelingMethod::centerline;
   double ratio = 1.0;
 
@@ -42,8 +39,8 @@ struct Run {
 };
 
 /// The data set's clouds, of each set and number of tubes the first ones alone where options say so.
-std::vector<CloudFile> choose_clouds(const BatchOptions& options) {
-  std::vector<CloudFile> clouds = find_clouds(options.dataset);
+std::vector<CloudFile> choose_clouds(const DatasetFiles& files, const BatchOptions& options) {
+  std::vector<CloudFile> clouds = find_clouds(files);
   if (options.cases > 0) {
     std::map<std::string, int> taken;
     std::erase_if(clouds, [&](const CloudFile& cloud) {
@@ -126,12 +123,13 @@ std::string format_result(const Run& run, const CloudToModel& input, const Model
 }
 
 /// In a worker process.
-AttemptResult do_run(const Run& run, const BatchOptions& options, const ModelConfig& config) {
+AttemptResult do_run(const Run& run, const DatasetFiles& dataset, const BatchOptions& options,
+                     const ModelConfig& config) {
   CloudToModel input;
   ModelingResult result;
   ModelConfig own = run_config(config, run);
   try {
-    input = read_cloud_to_model(run.cloud);
+    input = read_cloud_to_model(dataset, {run.scene, run.cloud});
     result = model_cloud(input, own);
   } catch (const IoError& error) {
     return failed_attempt("unreadable", error.what());  // this cloud's fault: the others go on
@@ -153,7 +151,7 @@ AttemptResult do_run(const Run& run, const BatchOptions& options, const ModelCon
 
 std::string format_index(const BatchOptions& options, const ModelConfig& config, const std::vector<CloudFile>& clouds) {
   Json scenes = Json::array(), methods = Json::array();
-  for (const auto& [scene, path] : clouds) scenes.push_back(scene);
+  for (const CloudFile& cloud : clouds) scenes.push_back(cloud.scene);
   for (const ModelingMethod method : options.methods) methods.push_back(name_of(method));
   ModelConfig described = config;
   return Json{{"format", "tubebin results 1"},
@@ -168,9 +166,24 @@ std::string format_index(const BatchOptions& options, const ModelConfig& config,
          "\n";
 }
 
+/// Those whose runs this call does.
+std::vector<CloudFile> deal_clouds(const std::vector<CloudFile>& all, const BatchOptions& options) {
+  if (!options.shard) return all;
+  std::vector<std::int64_t> costs;
+  for (const CloudFile& cloud : all) costs.push_back(modeling_cost(parse_scene_name(cloud.scene).tubes));
+  std::vector<CloudFile> own;
+  std::int64_t cost = 0;
+  for (const std::size_t i : deal(costs, *options.shard)) {
+    own.push_back(all[i]);
+    cost += costs[i];
+  }
+  const std::int64_t whole = std::accumulate(costs.begin(), costs.end(), std::int64_t{0});
+  options.on_dealt(own.size(), all.size(), static_cast<double>(cost) / static_cast<double>(whole));
+  return own;
+}
+
 /// Adds methods, ratios and scenes that the folder holds already; what the runs depend on must be the same.
 std::string merge_index(const std::string& path, const std::string& wanted_text) {
-  if (!fs::exists(path)) return wanted_text;
   Json wanted = Json::parse(wanted_text);
   Json held;
   try {
@@ -198,11 +211,24 @@ std::string merge_index(const std::string& path, const std::string& wanted_text)
   return wanted.dump(1) + "\n";
 }
 
+/// All parts of a call write the same index, whose scenes are those of the whole call.
+void settle_index(const BatchOptions& options, const ModelConfig& config, const std::vector<CloudFile>& clouds) {
+  const std::string path = options.results + "/index.json";
+  const std::string wanted = format_index(options, config, clouds);
+  if (!fs::exists(path) && create_file_atomically(path, wanted)) return;
+  const std::string merged = merge_index(path, wanted);
+  if (merged != read_file(path)) write_file_atomically(path, merged);
+}
+
+std::string failures_path(const BatchOptions& options) {
+  return options.results + (options.shard ? "/failures." + options.shard->name() + ".jsonl" : "/failures.jsonl");
+}
+
 std::vector<Run> list_runs(const BatchOptions& options, const std::vector<CloudFile>& clouds) {
   std::vector<Run> runs;
-  for (const auto& [scene, path] : clouds)
+  for (const auto& [scene, file] : clouds)
     for (const ModelingMethod method : options.methods)
-      for (const double ratio : options.ratios) runs.push_back({scene, path, method, ratio});
+      for (const double ratio : options.ratios) runs.push_back({scene, file, method, ratio});
   return runs;
 }
 
@@ -229,61 +255,16 @@ class NothingUnfinished {
   const std::vector<CloudFile>& clouds_;
 };
 
-double parse_ratio(std::string_view text, const std::string& all) {
-  double ratio = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ratio);
-  if (error != std::errc{} || end != text.data() + text.size() || !(ratio > 0.0 && ratio <= 1.0))
-    throw_config_error("--ratios {}: '{}' is no ratio above 0 and up to 1; write 0.1,0.3,1 or 0.1:1.0:0.1", all, text);
-  return ratio;
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, start), text.size());
-    parts.push_back(text.substr(start, end - start));
-    start = end + 1;
-  }
-  return parts;
-}
-
-std::vector<double> parse_ratio_list(const std::string& text) {
-  std::vector<double> ratios;
-  for (const std::string_view part : split(text, ',')) ratios.push_back(parse_ratio(part, text));
-  return ratios;
-}
-
-std::vector<double> parse_ratio_range(const std::string& text) {
-  const auto parts = split(text, ':');
-  if (parts.size() != 3) throw_config_error("--ratios {}: a range is first:last:step, as 0.1:1.0:0.1", text);
-  const double first = parse_ratio(parts[0], text), last = parse_ratio(parts[1], text),
-               step = parse_ratio(parts[2], text);
-  if (first > last) throw_config_error("--ratios {}: the first is above the last", text);
-  if ((last - first) / step > kRatiosMax) throw_config_error("--ratios {}: makes more than {}", text, kRatiosMax);
-  // Decimal steps, not their binary sums: 0.3, not 0.30000000000000004.
-  std::vector<double> ratios;
-  for (int k = 0; first + k * step <= last + 1e-9; ++k) ratios.push_back(std::round((first + k * step) * 1e9) / 1e9);
-  return ratios;
-}
-
 }  // namespace
-
-std::vector<double> parse_ratios(const std::string& text) {
-  std::vector<double> ratios = text.find(':') == std::string::npos ? parse_ratio_list(text) : parse_ratio_range(text);
-  std::vector<double> sorted = ratios;
-  std::sort(sorted.begin(), sorted.end());
-  if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
-    throw_config_error("--ratios {}: {} is there twice", text, *twice);
-  return ratios;
-}
 
 BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config, Progress::Style progress_style) try {
   const auto start = std::chrono::steady_clock::now();
-  const auto clouds = choose_clouds(options);
+  const DatasetFiles dataset(options.dataset);
+  const auto all_clouds = choose_clouds(dataset, options);
+  const auto clouds = deal_clouds(all_clouds, options);
   fs::create_directories(options.results);
-  const FolderLock lock(options.results);
-  const std::string index = options.results + "/index.json";
-  write_file_atomically(index, merge_index(index, format_index(options, config, clouds)));
+  const FolderLock lock(options.results, options.shard ? FolderLock::Kind::part : FolderLock::Kind::exclusive);
+  settle_index(options, config, all_clouds);
   const NothingUnfinished nothing_unfinished(options.results, clouds);
 
   const std::vector<Run> runs = list_runs(options, clouds);
@@ -311,10 +292,9 @@ BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config
       .on_tick = [&] { progress.show(); }};
   const PoolOptions pool_options{.workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit};
   const PoolReport pool = run_jobs(
-      missing, pool_options, [&](std::size_t job, int) { return do_run(runs[job], options, config); }, events);
-  const std::string failures_path = options.results + "/failures.jsonl";
-  if (!failures.empty()) write_file_atomically(failures_path, failures);
-  else fs::remove(failures_path);
+      missing, pool_options, [&](std::size_t job, int) { return do_run(runs[job], dataset, options, config); }, events);
+  if (!failures.empty()) write_file_atomically(failures_path(options), failures);
+  else fs::remove(failures_path(options));
   report.made = pool.succeeded;
   report.signal = pool.signal;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -1,15 +1,11 @@
 #include "tubebin/dataset/points_of_run.hpp"
 
-#include <filesystem>
-
 #include "scene/json_reader.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/dataset/model_cloud.hpp"
 
 namespace tubebin {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// The options that model.json says the run had.
 ModelConfig read_run_config(const std::string& path) {
@@ -19,20 +15,16 @@ ModelConfig read_run_config(const std::string& path) {
   return config;
 }
 
-std::optional<std::string> find_cloud(const RunScore& run) {
-  for (const char* name : {"/cloud.pcd", "/cloud.ply"})
-    if (const std::string path = run.dataset + "/" + run.key.scene + name; fs::exists(path)) return path;
-  return std::nullopt;
-}
-
 double micro_recall(const LabelledPoints& points) {
   return match_segments(count_pairs(points.truth, points.predicted, 0)).micro_recall();
 }
 
 std::optional<LabelledPoints> model_again(const RunScore& run) {
-  const std::optional<std::string> cloud = run.folder.empty() ? std::nullopt : find_cloud(run);
-  if (!cloud) return std::nullopt;
-  const CloudToModel input = read_cloud_to_model(*cloud);
+  if (run.folder.empty()) return std::nullopt;
+  const DatasetFiles files(run.dataset);
+  const CloudFile cloud{run.key.scene, files.cloud_of(run.key.scene)};
+  if (cloud.file.empty()) return std::nullopt;
+  const CloudToModel input = read_cloud_to_model(files, cloud);
   if (input.cloud.labels.empty() || !input.scene) return std::nullopt;
   const ModelingResult result = model_cloud(input, read_run_config(run.folder + "/model.json"));
   LabelledPoints points;

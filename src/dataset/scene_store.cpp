@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "tubebin/dataset/whole_folder.hpp"
+#include "tubebin/scene/dataset_files.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 
 namespace tubebin {
@@ -55,17 +57,26 @@ std::function<std::map<std::string, FileRecord>()> SceneStore::begin_write(const
 }
 
 bool SceneStore::has(const ManifestRecord& record) const {
+  if (!record.pack.empty()) {
+    std::error_code error;
+    const std::uintmax_t bytes = fs::file_size(packs_folder(folder_) + "/" + record.pack, error);
+    return !error && bytes >= record.pack_end;
+  }
   return std::all_of(record.files.begin(), record.files.end(), [&](const auto& entry) {
     std::error_code error;
     return fs::file_size(fs::path(path(record.id)) / entry.first, error) == entry.second.bytes && !error;
   });
 }
 
-void SceneStore::remove_unfinished() const try {
-  for (const fs::directory_entry& set : fs::directory_iterator(folder_))
-    if (set.is_directory()) remove_unfinished_folders(set.path().string());
-} catch (const fs::filesystem_error& error) {
-  throw_io_error("{}: cannot be cleared of unfinished scenes: {}", folder_, error.code().message());
+void SceneStore::remove_unfinished(const std::vector<SceneId>& scenes, Unfinished which) const {
+  std::map<fs::path, std::set<std::string>> names;
+  for (const SceneId& id : scenes) {
+    const fs::path scene = path(id.name());
+    names[scene.parent_path()].insert(scene.filename().string());
+  }
+  for (const auto& [parent, own] : names)
+    if (fs::is_directory(parent))
+      remove_unfinished_folders(parent.string(), which == Unfinished::only ? own : std::set<std::string>{});
 }
 
 }  // namespace tubebin

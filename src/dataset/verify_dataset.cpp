@@ -10,9 +10,9 @@
 namespace tubebin {
 namespace {
 
-AttemptResult check_scene(const std::string& folder, const DatasetConfig& config, const SceneId& id,
+AttemptResult check_scene(const DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
                           const ManifestRecord& record) {
-  return successful_attempt(fmt::format("{}", fmt::join(verify_scene(folder, config, id, record), "\n")));
+  return successful_attempt(fmt::format("{}", fmt::join(verify_scene(files, config, id, record), "\n")));
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -40,6 +40,7 @@ VerificationReport verify_dataset(const std::string& folder, int jobs, Progress:
   const FolderLock lock(folder, FolderLock::Kind::shared);
   const DatasetConfig config = read_dataset_config(folder);
   const Manifest manifest(folder);
+  const DatasetFiles files(folder);
   VerificationReport report;
   report.problems = manifest.damaged_lines();
 
@@ -60,7 +61,7 @@ VerificationReport verify_dataset(const std::string& folder, int jobs, Progress:
                               },
                           .on_tick = [&] { progress.show(); }};
   const auto work = [&](std::size_t job, int) {
-    return check_scene(folder, config, scenes[job], *manifest.find(scenes[job].name()));
+    return check_scene(files, config, scenes[job], *manifest.find(scenes[job].name()));
   };
   const PoolOptions options{.workers = jobs, .attempts_max = 1, .attempt_time_limit = config.attempt_time_limit};
   report.signal = run_jobs(recorded, options, work, events).signal;

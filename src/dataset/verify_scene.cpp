@@ -1,11 +1,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 
+#include "scene_check.hpp"
 #include "surface_distance.hpp"
-#include "tubebin/core/atomic_file.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
 #include "tubebin/dataset/verify_dataset.hpp"
 #include "tubebin/scan/scanner.hpp"
@@ -23,21 +22,6 @@ constexpr double kSurfaceTolerance = 5e-6;
 constexpr double kTextTolerance = 1e-8;
 // Where tubes collide follows where they are scanned within 1 mm.
 constexpr double kContactTolerance = 1e-3;
-
-void check_files(const std::string& path, const ManifestRecord& record, Problems& problems) {
-  for (const auto& [name, expected] : record.files) {
-    const std::string file = path + "/" + name;
-    if (!std::filesystem::exists(file)) {
-      problems.push_back(name + " is missing");
-      continue;
-    }
-    const FileRecord found = record_bytes(read_file(file));
-    if (found.bytes != expected.bytes)
-      problems.push_back(fmt::format("{} has {} bytes, recorded are {}", name, found.bytes, expected.bytes));
-    else if (found.xxh128 != expected.xxh128)
-      problems.push_back(fmt::format("{} has hash {}, recorded is {}", name, found.xxh128, expected.xxh128));
-  }
-}
 
 void check_identity(const SceneRecord& scene, const DatasetConfig& config, const SceneId& id,
                     const ManifestRecord& record, Problems& problems) {
@@ -57,8 +41,7 @@ void check_colors(const SceneRecord& scene, Problems& problems) {
                                    scene.scene.tubes.size()));
 }
 
-void check_tubes_txt(const std::string& path, const SceneRecord& scene, Problems& problems) {
-  const std::vector<PlacedTube> read = read_tubes_txt(path);
+void check_tubes_txt(const std::vector<PlacedTube>& read, const SceneRecord& scene, Problems& problems) {
   bool same = read.size() == scene.scene.tubes.size();
   for (std::size_t k = 0; same && k < read.size(); ++k) {
     const PlacedTube& tube = scene.scene.tubes[k];
@@ -143,8 +126,7 @@ void check_cloud(const Cloud& cloud, const SceneRecord& scene, Problems& problem
   if (has_effects) check_effects(cloud, scene, problems);
 }
 
-void check_clean_cloud(const std::string& path, const SceneRecord& scene, Problems& problems) {
-  const Cloud clean = read_cloud(path);
+void check_clean_cloud(const Cloud& clean, const SceneRecord& scene, Problems& problems) {
   check_cloud_layout(clean, scene, problems);
   if (!problems.empty()) return;
   check_points(clean, scene, true, problems);
@@ -191,35 +173,54 @@ void check_relations(const SceneRecord& scene, Problems& problems) {
     problems.push_back("scene.json's amodal pixels, occlusions or entanglement are not those of its tubes");
 }
 
-void check_content(const std::string& path, const DatasetConfig& config, const SceneId& id,
+void check_content(const DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
                    const ManifestRecord& record, Problems& problems) {
-  const SceneRecord scene = read_scene_json(path + "/scene.json");
+  const auto parse = [&](const auto& parser, const std::string& file) {
+    return parser(files.read(record.id, file), files.place(record.id, file));
+  };
+  const auto cloud_parser = [](const std::string& bytes, const std::string& name) { return parse_cloud(bytes, name); };
+  const SceneRecord scene = parse(parse_scene_json, "scene.json");
   check_identity(scene, config, id, record, problems);
   check_colors(scene, problems);
-  check_tubes_txt(path + "/tubes.txt", scene, problems);
+  check_tubes_txt(parse(parse_tubes_txt, "tubes.txt"), scene, problems);
   check_contacts(scene, config, problems);
   check_held(scene, problems);
   check_relations(scene, problems);
   if (record.physics.largest_drift > config.physics.drift_max)
     problems.push_back(
         fmt::format("a tube moved by {:.3f} mm in the check at the end", record.physics.largest_drift * 1e3));
-  const Cloud cloud = read_cloud(path + "/cloud" + extension(config.output.format));
+  const Cloud cloud = parse(cloud_parser, std::string("cloud") + extension(config.output.format));
   check_cloud_layout(cloud, scene, problems);
   if (problems.empty()) check_cloud(cloud, scene, problems);
   if (config.output.clean_cloud)
-    check_clean_cloud(path + "/cloud_clean" + extension(config.output.format), scene, problems);
+    check_clean_cloud(parse(cloud_parser, std::string("cloud_clean") + extension(config.output.format)), scene, problems);
 }
 
 }  // namespace
 
-std::vector<std::string> verify_scene(const std::string& folder, const DatasetConfig& config, const SceneId& id,
+std::vector<std::string> check_files(const DatasetFiles& files, const ManifestRecord& record) {
+  Problems problems;
+  for (const auto& [name, expected] : record.files) {
+    if (!files.has(record.id, name)) {
+      problems.push_back(name + " is missing");
+      continue;
+    }
+    const FileRecord found = record_bytes(files.read(record.id, name));
+    if (found.bytes != expected.bytes)
+      problems.push_back(fmt::format("{} has {} bytes, recorded are {}", name, found.bytes, expected.bytes));
+    else if (found.xxh128 != expected.xxh128)
+      problems.push_back(fmt::format("{} has hash {}, recorded is {}", name, found.xxh128, expected.xxh128));
+  }
+  return problems;
+}
+
+std::vector<std::string> verify_scene(const DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
                                       const ManifestRecord& record) {
   Problems problems;
-  const std::string path = folder + "/" + id.name();
   try {
-    check_files(path, record, problems);
+    problems = check_files(files, record);
     // Files that aren't as they were written make no sense to look into.
-    if (problems.empty()) check_content(path, config, id, record, problems);
+    if (problems.empty()) check_content(files, config, id, record, problems);
   } catch (const IoError& error) {
     problems.emplace_back(error.what());
   }

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "file_descriptor.hpp"
+#include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin {
@@ -20,9 +22,12 @@ namespace fs = std::filesystem;
 
 constexpr const char* kUnfinishedSuffix = ".partial";
 
-/// "DIR/A10/.007.partial": a hidden sibling, so that the rename stays within one folder.
+/// "DIR/A10/.007.host-1234-0.partial": a hidden sibling, so that the rename stays within one folder, and no other
+/// process's, should two make the same scene.
 fs::path unfinished_path(const fs::path& scene) {
-  return scene.parent_path() / fmt::format(".{}{}", scene.filename().string(), kUnfinishedSuffix);
+  static std::atomic<unsigned> counter = 0;
+  return scene.parent_path() /
+         fmt::format(".{}.{}-{}{}", scene.filename().string(), process_name(), counter++, kUnfinishedSuffix);
 }
 
 void sync_folder(const fs::path& path) {
@@ -58,12 +63,26 @@ class UnfinishedFolder {
   void rename_to_final() const {
     for (const fs::path& folder : inner_) sync_folder(folder);
     sync_folder(path_);
-    fs::remove_all(scene_);
-    fs::rename(path_, scene_);
+    while (!take_name())
+      ;
     sync_folder(scene_.parent_path());
   }
 
  private:
+  /// Returns false where another folder got there between moving the old one away and taking its name.
+  bool take_name() const {
+    std::error_code error;
+    fs::rename(path_, scene_, error);
+    if (!error) return true;
+    if (error != std::errc::directory_not_empty && error != std::errc::file_exists && error != std::errc::not_a_directory)
+      throw fs::filesystem_error("rename", path_, scene_, error);
+    const fs::path old = unfinished_path(scene_);
+    fs::rename(scene_, old, error);
+    if (!error) fs::remove_all(old);
+    else if (error != std::errc::no_such_file_or_directory) throw fs::filesystem_error("rename", scene_, old, error);
+    return false;
+  }
+
   fs::path scene_;
   fs::path path_;
   std::set<fs::path> inner_;
@@ -92,6 +111,25 @@ class NewFile {
   std::string path_;
   FileDescriptor file_;
 };
+
+/// Some file systems make no hard links, and none makes them to another disk.
+bool asks_for_copy(const std::error_code& error) {
+  return error == std::errc::cross_device_link || error == std::errc::operation_not_permitted ||
+         error == std::errc::not_supported || error == std::errc::function_not_supported ||
+         error == std::errc::too_many_links;
+}
+
+/// A hard link to the file, or a copy that is on the disk.
+void link_or_copy(const std::string& source, const std::string& path) {
+  std::error_code error;
+  fs::create_hard_link(source, path, error);
+  if (!error) return;
+  if (!asks_for_copy(error)) throw fs::filesystem_error("link", source, path, error);
+  fs::copy_file(source, path);
+  const FileDescriptor copy(open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (copy.get() < 0 || fsync(copy.get()) != 0)
+    throw_io_error("{}: cannot be written: {}", path, std::strerror(errno));
+}
 
 /// The files of one folder on their way to the disk.
 class FolderOnItsWay {
@@ -122,14 +160,44 @@ std::function<void()> begin_whole_folder(const std::string& path, const std::map
   return [folder = std::make_shared<FolderOnItsWay>(path, files)] { folder->arrive(); };
 }
 
+std::function<void()> begin_linked_folder(const std::string& path,
+                                          const std::map<std::string, std::string>& sources) try {
+  const auto folder = std::make_shared<UnfinishedFolder>(path);
+  for (const auto& [name, source] : sources) link_or_copy(source, folder->file(name));
+  return [folder, path] {
+    try {
+      folder->rename_to_final();
+    } catch (const fs::filesystem_error& error) {
+      throw_io_error("{}: cannot be written: {}", path, error.code().message());
+    }
+  };
+} catch (const fs::filesystem_error& error) {
+  throw_io_error("{}: cannot be written: {}", path, error.code().message());
+}
+
+void link_file(const std::string& source, const std::string& path) try {
+  const std::string unfinished = unfinished_path(path).string();
+  fs::remove(unfinished);
+  link_or_copy(source, unfinished);
+  fs::rename(unfinished, path);
+  // Renaming a link over another one of the same file does nothing and leaves it.
+  fs::remove(unfinished);
+  sync_folder(fs::path(path).parent_path());
+} catch (const fs::filesystem_error& error) {
+  throw_io_error("{}: cannot be written: {}", path, error.code().message());
+}
+
 bool is_unfinished_folder(const std::string& path) {
   const std::string name = fs::path(path).filename().string();
   return name.starts_with('.') && name.ends_with(kUnfinishedSuffix);
 }
 
-void remove_unfinished_folders(const std::string& folder) try {
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (is_unfinished_folder(entry.path().string())) fs::remove_all(entry.path());
+void remove_unfinished_folders(const std::string& folder, const std::set<std::string>& of) try {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (is_unfinished_folder(name) && (of.empty() || of.contains(name.substr(1, name.find('.', 1) - 1))))
+      fs::remove_all(entry.path());
+  }
 } catch (const fs::filesystem_error& error) {
   throw_io_error("{}: cannot be cleared of what is unfinished: {}", folder, error.code().message());
 }

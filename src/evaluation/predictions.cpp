@@ -6,6 +6,7 @@
 #include "parallel.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/scene/dataset_files.hpp"
 #include "tubebin/scene/scene_json.hpp"
 
 namespace tubebin {
@@ -20,18 +21,13 @@ std::string find_cloud(const std::string& stem) {
   return "";
 }
 
-/// Folders below the data set that hold a cloud, as "A10/007", in order.
-std::vector<std::string> list_scenes(const std::string& dataset) {
-  if (!fs::is_directory(dataset)) throw_io_error("{}: is no folder", dataset);
-  std::vector<std::string> scenes;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dataset)) {
-    if (!entry.is_directory() || entry.path().filename().string().starts_with('.')) continue;
-    if (!find_cloud((entry.path() / "cloud").string()).empty())
-      scenes.push_back(fs::relative(entry.path(), dataset).generic_string());
-  }
+/// Names of the data set's scenes that have a cloud, in order.
+std::vector<std::string> list_scenes(const DatasetFiles& dataset) {
+  if (!fs::exists(dataset.dataset())) throw_io_error("{}: is no folder", dataset.dataset());
+  std::vector<std::string> scenes = dataset.scenes();
+  std::erase(scenes, ".");
   if (scenes.empty())
-    throw_io_error("{}: no scene with a cloud.pcd or cloud.ply is in it, so it is no data set", dataset);
-  std::sort(scenes.begin(), scenes.end());
+    throw_io_error("{}: no scene with a cloud.pcd or cloud.ply is in it, so it is no data set", dataset.dataset());
   return scenes;
 }
 
@@ -47,8 +43,7 @@ PredictionFiles find_prediction(const std::string& folder, const std::string& sc
   return {find_cloud(stem + "/labeled"), find_cloud(stem + "/filtered")};
 }
 
-Cloud read_ground_truth(const std::string& path) {
-  Cloud cloud = read_cloud(path);
+Cloud check_ground_truth(Cloud cloud, const std::string& path) {
   if (cloud.labels.empty()) throw_io_error("{}: has no label field, so it is no ground truth", path);
   cloud.colors.clear();
   return cloud;
@@ -64,10 +59,14 @@ void keep_field(Cloud& cloud, SegmentField field, const std::string& path) {
   other.clear();
 }
 
-RunScore score_scene(const std::string& dataset, const std::string& scene, const PredictionFiles& files, RunKey key,
+RunScore score_scene(const DatasetFiles& dataset, const std::string& scene, const PredictionFiles& files, RunKey key,
                      SegmentField field) {
-  const std::string truth_path = files.filtered.empty() ? find_cloud(dataset + "/" + scene + "/cloud") : files.filtered;
-  const Cloud truth = read_ground_truth(truth_path);
+  const std::string cloud = dataset.cloud_of(scene);
+  const std::string truth_path = files.filtered.empty() ? dataset.place(scene, cloud) : files.filtered;
+  const Cloud truth = check_ground_truth(files.filtered.empty()
+                                             ? parse_cloud(dataset.read(scene, cloud), truth_path)
+                                             : read_cloud(truth_path),
+                                         truth_path);
   Cloud labeled;
   if (!files.labeled.empty()) {
     labeled = read_cloud(files.labeled);
@@ -79,14 +78,15 @@ RunScore score_scene(const std::string& dataset, const std::string& scene, const
       match_segments(contingency, files.filtered.empty() ? BinPoints::left_out : BinPoints::counted);
 
   std::optional<SceneTruth> scene_truth;
-  if (const std::string path = dataset + "/" + scene + "/scene.json"; fs::exists(path)) {
-    const SceneRecord record = read_scene_json(path);
+  if (dataset.has(scene, "scene.json")) {
+    const SceneRecord record =
+        parse_scene_json(dataset.read(scene, "scene.json"), dataset.place(scene, "scene.json"));
     key.tubes = static_cast<int>(record.scene.tubes.size());
     scene_truth.emplace(record.scene);
   }
   RunScore run = score_run(key, contingency, matching, scene_truth ? &*scene_truth : nullptr, {});
   run.failed = files.labeled.empty();
-  if (scene_truth) run.dataset = dataset;
+  if (scene_truth) run.dataset = dataset.dataset();
   run.filtered = truth_path;
   run.labeled = files.labeled;
   return run;
@@ -94,14 +94,16 @@ RunScore score_scene(const std::string& dataset, const std::string& scene, const
 
 }  // namespace
 
-Evaluation score_predictions(const std::string& dataset, const std::string& folder, const PredictionOptions& options) {
+Evaluation score_predictions(const std::string& dataset_path, const std::string& folder,
+                             const PredictionOptions& options) {
+  const DatasetFiles dataset(dataset_path);
   const std::vector<std::string> scenes = list_scenes(dataset);
   if (!fs::is_directory(folder)) throw_io_error("{}: is no folder", folder);
   std::vector<PredictionFiles> files;
   for (const std::string& scene : scenes) files.push_back(find_prediction(folder, scene));
   if (std::all_of(files.begin(), files.end(), [](const PredictionFiles& f) { return f.labeled.empty(); }))
     throw_io_error("{}: has no prediction for any of the {} scenes of {}; expected {}/{}.pcd or {}/{}/labeled.pcd",
-                   folder, scenes.size(), dataset, folder, scenes.front(), folder, scenes.front());
+                   folder, scenes.size(), dataset_path, folder, scenes.front(), folder, scenes.front());
 
   Evaluation evaluation;
   evaluation.source = folder;

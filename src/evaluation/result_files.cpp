@@ -76,6 +76,13 @@ ResultsIndex parse_results_index(std::string_view text, const std::string& name)
     configuration[key] = json[key];
   }
   index.configuration = configuration.dump(2);
+  configuration.erase("dataset");
+  nlohmann::ordered_json& options = configuration["options"];
+  if (options.is_object()) {
+    options.erase("method");
+    if (options.contains("filtering") && options["filtering"].is_object()) options["filtering"].erase("ratio");
+  }
+  index.conditions = configuration.dump();
   return index;
 }
 

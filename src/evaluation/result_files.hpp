@@ -19,6 +19,7 @@ struct ResultsIndex {
   std::vector<double> ratios;
   std::vector<std::string> scenes;
   std::string configuration;  ///< what all runs depend on, as JSON
+  std::string conditions;     ///< the same without the data set's place and what each run has its own of
 };
 
 /// result.json: the points of one run.

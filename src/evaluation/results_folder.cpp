@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "parallel.hpp"
 #include "result_files.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/scene/dataset_files.hpp"
 #include "tubebin/scene/scene_json.hpp"
 
 namespace tubebin {
@@ -26,10 +28,15 @@ ResultsIndex read_index(const std::string& folder) {
   return parse_results_index(read_file(path), path);
 }
 
+/// Of the last call, and of the parts of one.
 std::map<std::string, std::string> read_failures(const std::string& folder) {
-  const std::string path = folder + "/failures.jsonl";
-  if (!fs::exists(path)) return {};
-  return parse_failures(read_file(path), path);
+  std::map<std::string, std::string> failures;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("failures.") && name.ends_with(".jsonl"))
+      failures.merge(parse_failures(read_file(entry.path().string()), entry.path().string()));
+  }
+  return failures;
 }
 
 RunScore read_run(const std::string& folder, RunKey key, const SceneTruth* truth) {
@@ -80,12 +87,12 @@ struct SceneRuns {
   bool has_truth = false;
 };
 
-SceneRuns read_scene_runs(const std::string& folder, const ResultsIndex& index, const std::string& scene,
-                          const std::map<std::string, std::string>& failures) {
+SceneRuns read_scene_runs(const std::string& folder, const ResultsIndex& index, const DatasetFiles& dataset,
+                          const std::string& scene, const std::map<std::string, std::string>& failures) {
   std::optional<SceneRecord> record;
   std::optional<SceneTruth> truth;
-  if (const std::string path = index.dataset + "/" + scene + "/scene.json"; fs::exists(path)) {
-    record = read_scene_json(path);
+  if (dataset.has(scene, "scene.json")) {
+    record = parse_scene_json(dataset.read(scene, "scene.json"), dataset.place(scene, "scene.json"));
     truth.emplace(record->scene);
   }
   const SceneTruth* known_truth = truth ? &*truth : nullptr;
@@ -121,19 +128,29 @@ void append(Evaluation& evaluation, SceneRuns& scene) {
   move_all(scene.failed, evaluation.failed);
 }
 
+/// What was read from one folder.
+struct FolderRuns {
+  std::string folder;
+  std::string conditions;       ///< that its runs were made under
+  std::set<std::string> names;  ///< of the runs that it has or is to have
+};
+
 /// One folder's runs, added to the evaluation.
-void read_folder(const std::string& folder, const ResultsOptions& options, Evaluation& evaluation) {
+FolderRuns read_folder(const std::string& folder, const ResultsOptions& options, Evaluation& evaluation) {
   ResultsIndex index = read_index(folder);
   index.dataset =
       options.dataset.empty() ? (fs::path(folder) / index.dataset).lexically_normal().string() : options.dataset;
   const std::map<std::string, std::string> failures = read_failures(folder);
+  const DatasetFiles dataset(index.dataset);
   std::vector<SceneRuns> scenes(index.scenes.size());
   parallel_for(
       scenes.size(), options.jobs,
-      [&](std::size_t i) { scenes[i] = read_scene_runs(folder, index, index.scenes[i], failures); },
+      [&](std::size_t i) { scenes[i] = read_scene_runs(folder, index, dataset, index.scenes[i], failures); },
       options.on_progress);
 
+  FolderRuns read{.folder = folder, .conditions = index.conditions, .names = {}};
   const std::size_t runs_before = evaluation.runs.size();
+  const std::size_t missing_before = evaluation.missing.size();
   std::size_t without_truth = 0;
   for (SceneRuns& scene : scenes) {
     without_truth += scene.has_truth ? 0 : 1;
@@ -151,6 +168,21 @@ void read_folder(const std::string& folder, const ResultsOptions& options, Evalu
   evaluation.configuration += fmt::format("{}:\n{}\n", folder, index.configuration);
   if (const std::string config = index.dataset + "/config.yaml"; fs::exists(config))
     evaluation.configuration += fmt::format("\n{}:\n{}\n", config, read_file(config));
+  for (std::size_t i = runs_before; i < evaluation.runs.size(); ++i) read.names.insert(evaluation.runs[i].key.name());
+  read.names.insert(evaluation.missing.begin() + static_cast<std::ptrdiff_t>(missing_before), evaluation.missing.end());
+  return read;
+}
+
+/// Folders that are to have the same run are parts of one call, and then they must have been made alike.
+void require_same_conditions(const std::vector<FolderRuns>& folders) {
+  std::map<std::string, const FolderRuns*> asked;
+  for (const FolderRuns& folder : folders)
+    for (const std::string& name : folder.names) {
+      const FolderRuns& other = *asked.try_emplace(name, &folder).first->second;
+      if (other.conditions != folder.conditions)
+        throw_io_error("{} and {}: both are to have the run {}, but with another version, seed or options: {} and {}",
+                       other.folder, folder.folder, name, other.conditions, folder.conditions);
+    }
 }
 
 void require_distinct_runs(const Evaluation& evaluation) {
@@ -160,12 +192,32 @@ void require_distinct_runs(const Evaluation& evaluation) {
       throw_io_error("{}: the run {} is there twice", evaluation.source, run.key.name());
 }
 
+/// Each part's index asks for all runs of the call; what no folder has is missing, once.
+void keep_really_missing(Evaluation& evaluation) {
+  std::set<std::string> known;
+  for (const RunScore& run : evaluation.runs) known.insert(run.key.name());
+  std::erase_if(evaluation.missing, [&](const std::string& name) { return !known.insert(name).second; });
+}
+
+/// As they would stand in the index of one folder: scenes in order, then methods and ratios.
+void sort_runs(Evaluation& evaluation) {
+  std::ranges::stable_sort(evaluation.runs, {}, [](const RunScore& run) {
+    return std::tuple(run.key.tubes, run.key.set, run.key.case_number, run.key.scene);
+  });
+}
+
 }  // namespace
 
 Evaluation read_results(const std::vector<std::string>& folders, const ResultsOptions& options) {
   Evaluation evaluation;
-  for (const std::string& folder : folders) read_folder(folder, options, evaluation);
+  std::vector<FolderRuns> read;
+  for (const std::string& folder : folders) read.push_back(read_folder(folder, options, evaluation));
   require_distinct_runs(evaluation);
+  require_same_conditions(read);
+  if (folders.size() > 1) {
+    keep_really_missing(evaluation);
+    sort_runs(evaluation);
+  }
   return evaluation;
 }
 

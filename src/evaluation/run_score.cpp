@@ -68,7 +68,8 @@ RunKey parse_scene_name(const std::string& name) {
   if (slash == std::string::npos) return key;
   const std::size_t digits = group.find_last_not_of("0123456789") + 1;
   const std::string tubes = group.substr(digits);
-  const std::string case_text = name.substr(slash + 1);
+  const std::size_t last_slash = name.rfind('/');
+  const std::string case_text = name.substr(last_slash + 1);
   int tube_count = 0;
   int case_number = 0;
   const auto parse = [](const std::string& text, int& value) {
@@ -76,6 +77,10 @@ RunKey parse_scene_name(const std::string& name) {
     return error == std::errc{} && end == text.data() + text.size();
   };
   if (digits == 0 || !parse(tubes, tube_count) || !parse(case_text, case_number)) return key;
+  // "A1/12000/12345": from case 1000 on, thousands have folders of their own.
+  if (last_slash != slash &&
+      name.substr(slash, last_slash - slash) != fmt::format("/{}", case_number / 1000 * 1000))
+    return key;
   key.set = group.substr(0, digits);
   key.tubes = tube_count;
   key.case_number = case_number;

@@ -1,6 +1,7 @@
 // Twenty thousand scenes of one tube: their names, and a manifest that holds them all.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "dataset/program.hpp"
@@ -31,7 +32,11 @@ TEST(ManyScenes, HaveNamesAndSeedsOfTheirOwn) {
   EXPECT_EQ(names.size(), std::size_t{kScenes});
   EXPECT_EQ(seeds.size(), std::size_t{kScenes});
   EXPECT_TRUE(names.contains("A1/001"));
-  EXPECT_TRUE(names.contains("A1/20000"));
+  EXPECT_TRUE(names.contains("A1/999"));
+  EXPECT_TRUE(names.contains("A1/20000/20000"));
+  std::map<std::string, int> entries;
+  for (const std::string& name : names) ++entries[name.substr(0, name.rfind('/'))];
+  for (const auto& [folder, count] : entries) EXPECT_LE(count, 1000) << folder;
 }
 
 TEST(ManyScenes, AreDealtToShardsWithoutLoss) {

@@ -107,6 +107,7 @@ inline std::map<std::string, std::string> scene_files(const std::string& dataset
   std::map<std::string, std::string> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dataset)) {
     const fs::path name = fs::relative(entry.path(), dataset);
+    if (name.begin()->string() == "manifest.parts") continue;
     if (entry.is_regular_file() && name.has_parent_path()) files[name.string()] = read_text(entry.path());
   }
   return files;

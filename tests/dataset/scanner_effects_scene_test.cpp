@@ -47,7 +47,7 @@ TEST(ScannerEffects, VerifyFindsAPointThatIsNotTheSeeds) {
     write_text(path, bytes);
     ManifestRecord record = *Manifest(data).find("Q3/001");
     record.files[file] = record_bytes(bytes);
-    const auto problems = verify_scene(data, read_dataset_config(data), {"Q", 3, 1}, record);
+    const auto problems = verify_scene(DatasetFiles(data), read_dataset_config(data), {"Q", 3, 1}, record);
     EXPECT_THAT(fmt::format("{}", fmt::join(problems, "\n")), HasSubstr("1 points"));
     write_text(path, sound);
   }

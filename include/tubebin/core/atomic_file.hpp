@@ -12,6 +12,13 @@ namespace tubebin {
 /// and cause.
 void write_file_atomically(const std::string& path, std::string_view bytes);
 
+/// The same where no file of that name is yet. Returns false, and leaves what is there, where one is: of several
+/// processes that make it at once, on whatever hosts, one does.
+bool create_file_atomically(const std::string& path, std::string_view bytes);
+
+/// "host-1234": this process among all that share a file system, for names that no other uses.
+std::string process_name();
+
 /// The bytes of a regular file. Throws IoError naming path and cause.
 std::string read_file(const std::string& path);
 

@@ -4,14 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "tubebin/scene/dataset_files.hpp"
+
 namespace tubebin {
 
 struct CloudFile {
-  std::string scene;  ///< its folder beneath the data set's, "A10/007"
-  std::string path;
+  std::string scene;  ///< its name: its folder beneath the data set's, "A10/007"
+  std::string file;   ///< "cloud.pcd"
 };
 
 /// Every cloud.pcd and cloud.ply, scenes of fewer tubes first. Throws IoError where there is none.
-std::vector<CloudFile> find_clouds(const std::string& dataset);
+std::vector<CloudFile> find_clouds(const DatasetFiles& files);
 
 }  // namespace tubebin

@@ -56,6 +56,9 @@ std::string document_config();
 /// Keys whose values decide a scene's bytes and differ: "tube.radius: 0.0125 there, 0.01 here".
 std::vector<std::string> differences(const DatasetConfig& there, const DatasetConfig& here);
 
+/// `here` with the numbers of tubes and the cases of both, those of `there` first.
+DatasetConfig unite(const DatasetConfig& there, DatasetConfig here);
+
 /// "1,5,10-15" -> 1, 5, 10, 11, ..., 15. Throws ConfigError naming the part that is no number or range.
 std::vector<int> parse_tube_counts(const std::string& text);
 

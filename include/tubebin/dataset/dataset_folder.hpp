@@ -1,7 +1,10 @@
-/// The output folder of one data set: locked, made by one configuration, with its manifest and scenes.
+/// The output folder of one data set: locked, made by one configuration, with its manifest and scenes. Several hosts
+/// may each make a part of one folder.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/dataset/folder_lock.hpp"
@@ -22,6 +25,9 @@ class DatasetFolder {
   /// where it can't be written.
   DatasetFolder(const std::string& folder, const DatasetConfig& config);
 
+  /// The same for a part of the scenes, while others may make the other parts: touches nothing but these scenes.
+  DatasetFolder(const std::string& folder, const DatasetConfig& config, const Shard& shard);
+
   /// Removes what workers were stopped in the middle of.
   ~DatasetFolder();
   DatasetFolder(const DatasetFolder&) = delete;
@@ -37,7 +43,10 @@ class DatasetFolder {
   bool is_complete(const std::string& scene_name) const;
 
  private:
+  void remove_unfinished() const;
+
   std::string folder_;
+  std::optional<std::vector<SceneId>> part_;  // of whoever makes a part alone
   FolderLock lock_;
   DatasetConfig config_;
   SceneStore store_;

@@ -1,4 +1,4 @@
-/// One run at a time in one output folder.
+/// One run at a time in one output folder, or all parts of one.
 #pragma once
 
 #include <string>
@@ -9,7 +9,12 @@ namespace tubebin {
 /// once all of them have ended, however they ended.
 class FolderLock {
  public:
-  enum class Kind { exclusive, shared };
+  enum class Kind {
+    exclusive,
+    shared,  ///< of those who only read; no file is made for it
+    part     ///< of those who each make their own part. Nothing depends on it, since network file systems may not keep
+             ///< it: where they do, it keeps those out who want the folder to themselves
+  };
 
   /// Throws ConfigError where another run holds the folder (naming its process) and IoError where the lock file
   /// can't be made.

@@ -24,8 +24,9 @@ struct GenerationReport {
   std::size_t rejects_total() const;
 };
 
-/// Makes those of `scenes` that are not complete. Throws IoError, ConfigError.
+/// Makes those of `scenes` that are not complete. Where `pack` has a name, they end in DIR/packs/NAME.tar, in their
+/// order. Throws IoError, ConfigError.
 GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<SceneId>& scenes, int jobs,
-                                  Progress::Style progress);
+                                  Progress::Style progress, const std::string& pack = "");
 
 }  // namespace tubebin

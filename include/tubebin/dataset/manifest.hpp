@@ -1,4 +1,7 @@
 /// manifest.jsonl: one line of JSON for each complete scene of a data set, appended when the scene is complete.
+///
+/// Runs that make a part each of one folder, on several hosts, write no file together: each appends to a file of its
+/// own in manifest.parts/, and whoever reads the manifest reads them all.
 #pragma once
 
 #include <map>
@@ -7,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tubebin/dataset/scene_id.hpp"
 #include "tubebin/dataset/worker_pool.hpp"
 #include "tubebin/physics/drop_simulator.hpp"
 
@@ -28,6 +32,8 @@ struct ManifestRecord {
   std::map<std::string, double> seconds;  ///< wall-clock time by stage, and "total" with all attempts
   DropFigures physics;
   std::map<std::string, FileRecord> files;  ///< by name in the scene's folder
+  std::string pack = {};                    ///< "00002-of-00004.tar" that holds the files instead of a folder
+  std::uint64_t pack_end = 0;               ///< bytes of the pack up to the end of the scene's last file
 };
 
 /// One line, without the line's end.
@@ -40,24 +46,39 @@ FileRecord record_bytes(std::string_view bytes);
 
 class Manifest {
  public:
-  /// Reads `folder`/manifest.jsonl, if there is one. Of two records of one scene the later one counts.
+  /// Reads `folder`/manifest.jsonl and the parts, if they are there. Of two records of one scene the later one counts, but
+  /// for one of a packed scene, which only another such replaces: packing comes last.
   explicit Manifest(const std::string& folder);
+
+  /// Of a run that makes these scenes, the part `shard`: it reads the records of these alone and appends to a file of
+  /// its own.
+  Manifest(const std::string& folder, const Shard& shard, const std::vector<SceneId>& scenes);
 
   const std::map<std::string, ManifestRecord>& records() const { return records_; }
   const ManifestRecord* find(const std::string& id) const;
-  /// Lines that are no records, as "DIR/manifest.jsonl:12: problem". A last line that a kill cut short is not among
-  /// them.
+  /// Lines that are no records, as "DIR/manifest.jsonl:12: problem". A last line that a kill cut short, or that is just
+  /// being written, is not among them.
   const std::vector<std::string>& damaged_lines() const { return damaged_lines_; }
 
   /// Appends a line; after an error (IoError) the file is as it was before.
   void append(const ManifestRecord& record);
 
-  /// Writes the file anew without these scenes and without damaged lines.
+  /// Writes manifest.jsonl anew, with all records but those of these scenes, and removes the parts. For whoever has
+  /// the folder to himself.
   void rewrite_without(const std::set<std::string>& ids);
 
+  /// The same with the records of these scenes alone, in their order.
+  void rewrite(const std::vector<SceneId>& scenes);
+
  private:
-  std::string path_;
-  std::size_t complete_bytes_ = 0;  // up to the end of the last complete line
+  /// Returns the bytes up to the end of the last complete line.
+  std::size_t read(const std::string& path, const std::set<std::string>* wanted);
+  void replace_all(const std::string& text);
+
+  std::string folder_;
+  std::string path_;                // that append() writes to; empty: a new part is yet to be made
+  std::string part_name_;           // of a shard's run
+  std::size_t complete_bytes_ = 0;  // of `path_`, up to the end of the last complete line
   std::map<std::string, ManifestRecord> records_;
   std::vector<std::string> damaged_lines_;
 };

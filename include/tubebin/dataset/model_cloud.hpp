@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "tubebin/dataset/cloud_files.hpp"
 #include "tubebin/modeling/pipeline.hpp"
 #include "tubebin/scene/scene_json.hpp"
 
@@ -38,6 +39,9 @@ struct CloudToModel {
 
 /// Reads the cloud, its coordinates times `scale`, and scene.json in its folder if there is one. Throws IoError.
 CloudToModel read_cloud_to_model(const std::string& path, double scale = 1.0);
+
+/// The same of a scene of a data set.
+CloudToModel read_cloud_to_model(const DatasetFiles& files, const CloudFile& cloud);
 
 /// Models the cloud: its positions, its viewpoint and the scene's bin, nothing else of what is there. Throws IoError.
 ModelingResult model_cloud(const CloudToModel& input, const ModelConfig& config);

@@ -2,11 +2,14 @@
 /// (docs/results_format.md).
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tubebin/dataset/model_cloud.hpp"
 #include "tubebin/dataset/progress.hpp"
+#include "tubebin/dataset/shard.hpp"
 
 namespace tubebin {
 
@@ -19,6 +22,9 @@ struct BatchOptions {
   int cases = 0;              ///< of each set and number of tubes, the first ones; 0: all
   double time_limit = 600.0;  ///< seconds a run
   bool keep_clouds = false;
+  std::optional<Shard> shard;  ///< does the runs of a part of the clouds only, while others may do the other parts
+  /// Told, before a part's work begins, how many of how many clouds are its own, and their share of the work.
+  std::function<void(std::size_t own, std::size_t all, double share)> on_dealt = [](auto...) {};
 };
 
 struct BatchReport {

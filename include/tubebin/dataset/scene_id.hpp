@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tubebin/dataset/dataset_config.hpp"
+#include "tubebin/dataset/shard.hpp"
 
 namespace tubebin {
 
@@ -14,21 +15,13 @@ struct SceneId {
   int tubes = 0;        ///< number of tubes in the bin
   int case_number = 0;  ///< from 1
 
-  /// "A10/007": the scene's folder in its data set.
+  /// "A10/007": the scene's folder in its data set. From case 1000 on, each thousand has a folder of its own,
+  /// "A1/12000/12345", so that no folder has more than 2000 entries.
   std::string name() const;
   auto operator<=>(const SceneId&) const = default;
 };
 
-/// Part `index` (from 1) of `count`, which together are the whole.
-struct Shard {
-  int index = 1;
-  int count = 1;
-};
-
-/// "2/4" -> part 2 of 4. Throws ConfigError.
-Shard parse_shard(const std::string& text);
-
-/// The scenes that the configuration asks for, in order; a shard takes every count-th of them.
+/// The scenes that the configuration asks for, in order: all, or those that are dealt to a part of them by their cost.
 std::vector<SceneId> list_scenes(const DatasetConfig& config, Shard shard = {});
 
 }  // namespace tubebin

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/dataset/manifest.hpp"
@@ -26,6 +27,8 @@ class SceneStore {
  public:
   SceneStore(std::string folder, OutputOptions options) : folder_(std::move(folder)), options_(options) {}
 
+  /// "DIR"
+  const std::string& folder() const { return folder_; }
   /// "DIR/A10/007"
   std::string path(const std::string& scene_name) const { return folder_ + "/" + scene_name; }
   /// "cloud.pcd" or "cloud.ply"
@@ -39,11 +42,13 @@ class SceneStore {
   std::function<std::map<std::string, FileRecord>()> begin_write(const std::string& scene_name,
                                                                  const SceneContent& content) const;
 
-  /// True where the scene's folder has the files of the record, each with its size (hashes are for verify).
+  /// True where the scene's folder has the files of the record, each with its size (hashes are for verify), or its pack
+  /// is long enough to.
   bool has(const ManifestRecord& record) const;
 
-  /// Removes what killed runs left unfinished.
-  void remove_unfinished() const;
+  /// Removes what killed runs left unfinished: of anything in these scenes' folders, or `only` of these scenes.
+  enum class Unfinished { all, only };
+  void remove_unfinished(const std::vector<SceneId>& scenes, Unfinished which) const;
 
  private:
   std::string folder_;

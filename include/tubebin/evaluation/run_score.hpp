@@ -27,7 +27,8 @@ struct RunKey {
   std::string name() const;
 };
 
-/// The set, number of tubes and case that a scene's name tells: "A10/007" is set A, ten tubes, case 7. Where
+/// The set, number of tubes and case that a scene's name tells: "A10/007" is set A, ten tubes, case 7, and
+/// "A1/12000/12345" case 12345. Where
 /// it has another form, the set is its first folder and the other two are 0.
 RunKey parse_scene_name(const std::string& name);
 

@@ -1,0 +1,54 @@
+/// The files of a data set's scenes, wherever they lie: loose, DIR/A10/007/cloud.pcd, or packed, as the member
+/// A10/007.cloud.pcd of a tar in DIR/packs/ (the layout that WebDataset reads: a sample's files stand together, and
+/// share what precedes the first dot).
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tubebin/core/tar.hpp"
+
+namespace tubebin {
+
+/// "A10/007.cloud.pcd": the member of a pack that is this file of the scene.
+std::string packed_name(const std::string& scene, const std::string& file);
+
+/// "DIR/packs"
+std::string packs_folder(const std::string& dataset);
+
+class DatasetFiles {
+ public:
+  /// `dataset` is a data set's folder or a single pack. Packs are listed here, loose files looked for when they are asked
+  /// for, and preferred. Throws IoError where a pack can't be read.
+  explicit DatasetFiles(const std::string& dataset);
+
+  const std::string& dataset() const { return dataset_; }
+  bool has(const std::string& scene, const std::string& file) const;
+  /// Throws IoError.
+  std::string read(const std::string& scene, const std::string& file) const;
+  /// Where the file lies or would lie, for messages.
+  std::string place(const std::string& scene, const std::string& file) const;
+
+  /// "cloud.pcd" or "cloud.ply", whichever the scene has; "" where it has none.
+  std::string cloud_of(const std::string& scene) const;
+  /// Names of all scenes that have a cloud, sorted; "." where it lies in the folder itself. Throws IoError.
+  std::vector<std::string> scenes() const;
+
+ private:
+  struct Packed {
+    std::size_t pack;
+    TarMember member;  ///< its name is the file's within the scene
+  };
+  void add_pack(const std::string& path);
+  const Packed* find_packed(const std::string& scene, const std::string& file) const;
+  std::string loose_path(const std::string& scene, const std::string& file) const;
+
+  std::string dataset_;
+  bool is_folder_;
+  std::vector<std::string> packs_;
+  std::map<std::string, std::vector<Packed>> packed_;  // by scene
+};
+
+}  // namespace tubebin

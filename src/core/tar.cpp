@@ -1,0 +1,111 @@
+#include "tubebin/core/tar.hpp"
+
+#include <archive.h>
+#include <archive_entry.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "tubebin/core/error.hpp"
+
+namespace tubebin {
+namespace {
+
+constexpr std::size_t kBlock = 512;  // bytes; a tar consists of such
+
+using Reader = std::unique_ptr<archive, decltype(&archive_read_free)>;
+using Writer = std::unique_ptr<archive, decltype(&archive_write_free)>;
+using Entry = std::unique_ptr<archive_entry, decltype(&archive_entry_free)>;
+
+Reader open_tar(const std::string& path) {
+  Reader reader(archive_read_new(), archive_read_free);
+  archive_read_support_format_tar(reader.get());
+  archive_read_support_format_empty(reader.get());
+  if (archive_read_open_filename(reader.get(), path.c_str(), kBlock) != ARCHIVE_OK)
+    throw_io_error("{}: cannot be read: {}", path, archive_error_string(reader.get()));
+  return reader;
+}
+
+la_ssize_t collect(archive*, void* text, const void* bytes, std::size_t size) {
+  static_cast<std::string*>(text)->append(static_cast<const char*>(bytes), size);
+  return static_cast<la_ssize_t>(size);
+}
+
+/// Closes its file at the end of the scope.
+struct OpenFile {
+  explicit OpenFile(const std::string& path) : number(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  ~OpenFile() {
+    if (number >= 0) ::close(number);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  int number;
+};
+
+}  // namespace
+
+std::vector<TarMember> list_tar(const std::string& path) {
+  const Reader reader = open_tar(path);
+  const std::uintmax_t file_bytes = std::filesystem::file_size(path);
+  std::vector<TarMember> members;
+  archive_entry* entry = nullptr;
+  while (true) {
+    const int status = archive_read_next_header(reader.get(), &entry);
+    if (status == ARCHIVE_EOF) return members;
+    if (status == ARCHIVE_FATAL && !members.empty()) return members;  // cut short within the last member or its header
+    if (status != ARCHIVE_OK && status != ARCHIVE_WARN)
+      throw_io_error("{}: is no tar file: {}", path, archive_error_string(reader.get()));
+    if (archive_entry_filetype(entry) != AE_IFREG) continue;
+    const TarMember member{archive_entry_pathname(entry),
+                           static_cast<std::uint64_t>(archive_filter_bytes(reader.get(), 0)),
+                           static_cast<std::uint64_t>(archive_entry_size(entry))};
+    if (member.offset + member.bytes > file_bytes) return members;
+    members.push_back(member);
+  }
+}
+
+std::string read_tar_member(const std::string& path, const TarMember& member) {
+  const OpenFile file(path);
+  std::string bytes(member.bytes, '\0');
+  for (std::size_t filled = 0; filled < bytes.size();) {
+    const ssize_t count =
+        ::pread(file.number, bytes.data() + filled, bytes.size() - filled, static_cast<off_t>(member.offset + filled));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw_io_error("{}: cannot be read: {}", path, std::strerror(errno));
+    if (count == 0) throw_io_error("{}: {}: ends after {} of {} bytes", path, member.name, filled, member.bytes);
+    filled += static_cast<std::size_t>(count);
+  }
+  return bytes;
+}
+
+std::string format_tar_member(const std::string& name, std::string_view bytes) {
+  std::string text;
+  const Writer writer(archive_write_new(), archive_write_free);
+  const Entry entry(archive_entry_new(), archive_entry_free);
+  const auto require = [&](bool done) {
+    if (!done) throw_io_error("{}: cannot be packed: {}", name, archive_error_string(writer.get()));
+  };
+  require(archive_write_set_format_ustar(writer.get()) == ARCHIVE_OK);
+  require(archive_write_set_bytes_per_block(writer.get(), 0) == ARCHIVE_OK);
+  require(archive_write_open(writer.get(), &text, nullptr, collect, nullptr) == ARCHIVE_OK);
+  archive_entry_set_pathname(entry.get(), name.c_str());
+  archive_entry_set_size(entry.get(), static_cast<la_int64_t>(bytes.size()));
+  archive_entry_set_filetype(entry.get(), AE_IFREG);
+  archive_entry_set_perm(entry.get(), 0644);
+  archive_entry_set_mtime(entry.get(), 0, 0);
+  require(archive_write_header(writer.get(), entry.get()) == ARCHIVE_OK);
+  require(archive_write_data(writer.get(), bytes.data(), bytes.size()) == static_cast<la_ssize_t>(bytes.size()));
+  require(archive_write_finish_entry(writer.get()) == ARCHIVE_OK);
+  std::string member = text;  // without what closing adds
+  archive_write_fail(writer.get());
+  member.resize((member.size() + kBlock - 1) / kBlock * kBlock, '\0');
+  return member;
+}
+
+std::string format_tar_end() { return std::string(2 * kBlock, '\0'); }
+
+}  // namespace tubebin

@@ -1,0 +1,102 @@
+#include "tubebin/scene/dataset_files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <set>
+
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/error.hpp"
+
+namespace tubebin {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 2> kClouds = {"cloud.pcd", "cloud.ply"};
+
+}  // namespace
+
+std::string packed_name(const std::string& scene, const std::string& file) { return scene + "." + file; }
+
+std::string packs_folder(const std::string& dataset) { return dataset + "/packs"; }
+
+DatasetFiles::DatasetFiles(const std::string& dataset) : dataset_(dataset), is_folder_(fs::is_directory(dataset)) {
+  if (!is_folder_) {
+    if (fs::is_regular_file(dataset)) add_pack(dataset);
+    return;
+  }
+  std::error_code error;
+  std::vector<std::string> packs;
+  for (const fs::directory_entry& entry : fs::directory_iterator(packs_folder(dataset), error))
+    if (entry.path().extension() == ".tar" && !entry.path().filename().string().starts_with('.'))
+      packs.push_back(entry.path().string());
+  std::sort(packs.begin(), packs.end());
+  for (const std::string& pack : packs) add_pack(pack);
+}
+
+void DatasetFiles::add_pack(const std::string& path) {
+  packs_.push_back(path);
+  for (TarMember& member : list_tar(path)) {
+    if (member.name.starts_with("./")) member.name.erase(0, 2);
+    const std::size_t dot = member.name.find('.', member.name.rfind('/') + 1);  // npos + 1 is 0
+    if (dot == std::string::npos) continue;
+    const std::string scene = member.name.substr(0, dot);
+    member.name.erase(0, dot + 1);
+    packed_[scene].push_back({packs_.size() - 1, std::move(member)});
+  }
+}
+
+/// The last one of that name, as tar programs take it.
+const DatasetFiles::Packed* DatasetFiles::find_packed(const std::string& scene, const std::string& file) const {
+  const auto found = packed_.find(scene);
+  if (found == packed_.end()) return nullptr;
+  const auto match = std::find_if(found->second.rbegin(), found->second.rend(),
+                                  [&](const Packed& packed) { return packed.member.name == file; });
+  return match == found->second.rend() ? nullptr : &*match;
+}
+
+std::string DatasetFiles::loose_path(const std::string& scene, const std::string& file) const {
+  return dataset_ + "/" + scene + "/" + file;
+}
+
+bool DatasetFiles::has(const std::string& scene, const std::string& file) const {
+  return (is_folder_ && fs::exists(loose_path(scene, file))) || find_packed(scene, file) != nullptr;
+}
+
+std::string DatasetFiles::read(const std::string& scene, const std::string& file) const {
+  const Packed* packed = find_packed(scene, file);
+  if (packed == nullptr || (is_folder_ && fs::exists(loose_path(scene, file))))
+    return read_file(loose_path(scene, file));
+  return read_tar_member(packs_[packed->pack], packed->member);
+}
+
+std::string DatasetFiles::place(const std::string& scene, const std::string& file) const {
+  const Packed* packed = find_packed(scene, file);
+  if (packed == nullptr || (is_folder_ && fs::exists(loose_path(scene, file)))) return loose_path(scene, file);
+  return packs_[packed->pack] + ":" + packed_name(scene, file);
+}
+
+std::string DatasetFiles::cloud_of(const std::string& scene) const {
+  const auto found = std::ranges::find_if(kClouds, [&](const char* file) { return has(scene, file); });
+  return found == kClouds.end() ? "" : *found;
+}
+
+std::vector<std::string> DatasetFiles::scenes() const try {
+  std::set<std::string> scenes;
+  for (const auto& [scene, files] : packed_)
+    if (std::ranges::any_of(kClouds, [&](const char* file) { return find_packed(scene, file) != nullptr; }))
+      scenes.insert(scene);
+  if (!is_folder_) return {scenes.begin(), scenes.end()};
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dataset_)) {
+    const fs::path& path = entry.path();
+    if (path.filename() != kClouds[0] && path.filename() != kClouds[1]) continue;
+    const fs::path scene = path.parent_path().lexically_relative(dataset_);
+    if (!scene.filename().string().starts_with('.') || scene == ".") scenes.insert(scene.generic_string());
+  }
+  return {scenes.begin(), scenes.end()};
+} catch (const fs::filesystem_error& error) {
+  throw_io_error("{}: cannot be searched for clouds: {}", dataset_, error.code().message());
+}
+
+}  // namespace tubebin
