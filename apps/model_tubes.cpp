@@ -54,7 +54,9 @@ struct Arguments {
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("CLOUD_OR_DATASET", arguments.input, "A .pcd or .ply file, or a data set: its folder, or a .tar that --pack made")->required();
+  app.add_option("CLOUD_OR_DATASET", arguments.input,
+                 "A .pcd or .ply file, or a data set: its folder, or a .tar that --pack made")
+      ->required();
   app.add_option("-o,--output", arguments.output, "Folder of the results")->type_name("DIR")->required();
   app.add_option("-c,--config", arguments.config, "Options (YAML, see docs/modeling.md)")->type_name("modeling.yaml");
   app.add_option("--method", arguments.method, "centerline, region_growing, or both (data sets only)")
@@ -72,8 +74,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--cases", arguments.cases, "Only the first cases of each set and number of tubes")
       ->check(CLI::Range(1, 1000000));
-  app.add_option("--shard", arguments.shard,
-                 "Do only part I of N of a data set, counted from 1; without it, as the environment of a job array says")
+  app.add_option(
+         "--shard", arguments.shard,
+         "Do only part I of N of a data set, counted from 1; without it, as the environment of a job array says")
       ->type_name("I/N");
   app.add_option("--shard-count", arguments.shard_count, "N, where a scheduler says I alone (Kubernetes)")
       ->check(CLI::Range(1, 1000000))
@@ -150,7 +153,8 @@ int model_many(const Arguments& arguments) {
                        .shard = std::nullopt};
   if (arguments.method == "both") options.methods = {ModelingMethod::centerline, ModelingMethod::region_growing};
   if (!arguments.ratios.empty()) options.ratios = parse_ratios(arguments.ratios);
-  if (const ShardChoice choice = choose_shard(arguments.shard, arguments.shard_count, std::getenv); choice.is_sharded()) {
+  if (const ShardChoice choice = choose_shard(arguments.shard, arguments.shard_count, std::getenv);
+      choice.is_sharded()) {
     options.shard = choice.shard;
     if (!arguments.quiet)
       options.on_dealt = [choice](std::size_t own, std::size_t all, double share) {

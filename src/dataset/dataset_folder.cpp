@@ -90,9 +90,7 @@ void DatasetFolder::remove_unfinished() const {
   else store_.remove_unfinished(list_scenes(config_), SceneStore::Unfinished::all);
 }
 
-DatasetFolder::~DatasetFolder() try {
-  remove_unfinished();
-} catch (const IoError&) {  // the next run tries again
+DatasetFolder::~DatasetFolder() try { remove_unfinished(); } catch (const IoError&) {  // the next run tries again
 }
 
 bool DatasetFolder::is_complete(const std::string& scene_name) const {

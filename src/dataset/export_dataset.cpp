@@ -224,7 +224,8 @@ ExportReport export_dataset(const ExportOptions& options, Progress::Style progre
                           .on_tick = [&] { progress.show(); }};
   const PoolReport pool = run_jobs(
       missing, {.workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit},
-      [&](std::size_t job, int) { return export_one(*format, dataset, options.output, sources[job], entries[job]); }, events);
+      [&](std::size_t job, int) { return export_one(*format, dataset, options.output, sources[job], entries[job]); },
+      events);
   report.made = pool.succeeded;
   report.signal = pool.signal;
   if (report.signal == 0) {

@@ -70,8 +70,8 @@ std::string format_manifest_record(const ManifestRecord& record) {
   Json files = Json::object();
   for (const auto& [name, file] : record.files) files[name] = {{"bytes", file.bytes}, {"xxh128", file.xxh128}};
   Json json = {{"id", record.id},      {"tubes", record.tubes},     {"seed", record.seed},
-                     {"rejected", rejected}, {"seconds", record.seconds}, {"physics", to_json(record.physics)},
-                     {"files", files}};
+               {"rejected", rejected}, {"seconds", record.seconds}, {"physics", to_json(record.physics)},
+               {"files", files}};
   if (!record.pack.empty()) json["pack"] = {{"file", record.pack}, {"end", record.pack_end}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

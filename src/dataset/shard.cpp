@@ -56,8 +56,7 @@ std::optional<ShardChoice> slurm_shard(const Environment& environment, std::opti
   std::optional<int> count = variables.read("SLURM_ARRAY_TASK_COUNT", 1);
   if (!count && max) count = (*max - min) / step + 1;
   if (!count) count = given_count;
-  if (!count)
-    throw_config_error("SLURM_ARRAY_TASK_COUNT is missing beside {}; say --shard I/N", variables.source());
+  if (!count) throw_config_error("SLURM_ARRAY_TASK_COUNT is missing beside {}; say --shard I/N", variables.source());
   const int offset = *id - min;
   if (offset < 0 || offset % step != 0 || offset / step >= *count || (max && (*max - min) / step + 1 != *count))
     throw_config_error(
@@ -79,8 +78,9 @@ std::optional<ShardChoice> indexed_shard(const Environment& environment, std::op
   } else {
     count = given_count;
     if (!count)
-      throw_config_error("{} says which part this is, but not of how many; say --shard-count N or TUBEBIN_SHARD_COUNT=N",
-                         variables.source());
+      throw_config_error(
+          "{} says which part this is, but not of how many; say --shard-count N or TUBEBIN_SHARD_COUNT=N",
+          variables.source());
     variables.add(fmt::format("shard count {}", *count));
   }
   if (*index >= *count)

@@ -193,7 +193,8 @@ void check_content(const DatasetFiles& files, const DatasetConfig& config, const
   check_cloud_layout(cloud, scene, problems);
   if (problems.empty()) check_cloud(cloud, scene, problems);
   if (config.output.clean_cloud)
-    check_clean_cloud(parse(cloud_parser, std::string("cloud_clean") + extension(config.output.format)), scene, problems);
+    check_clean_cloud(parse(cloud_parser, std::string("cloud_clean") + extension(config.output.format)), scene,
+                      problems);
 }
 
 }  // namespace

@@ -74,7 +74,8 @@ class UnfinishedFolder {
     std::error_code error;
     fs::rename(path_, scene_, error);
     if (!error) return true;
-    if (error != std::errc::directory_not_empty && error != std::errc::file_exists && error != std::errc::not_a_directory)
+    if (error != std::errc::directory_not_empty && error != std::errc::file_exists &&
+        error != std::errc::not_a_directory)
       throw fs::filesystem_error("rename", path_, scene_, error);
     const fs::path old = unfinished_path(scene_);
     fs::rename(scene_, old, error);
@@ -127,8 +128,7 @@ void link_or_copy(const std::string& source, const std::string& path) {
   if (!asks_for_copy(error)) throw fs::filesystem_error("link", source, path, error);
   fs::copy_file(source, path);
   const FileDescriptor copy(open(path.c_str(), O_WRONLY | O_CLOEXEC));
-  if (copy.get() < 0 || fsync(copy.get()) != 0)
-    throw_io_error("{}: cannot be written: {}", path, std::strerror(errno));
+  if (copy.get() < 0 || fsync(copy.get()) != 0) throw_io_error("{}: cannot be written: {}", path, std::strerror(errno));
 }
 
 /// The files of one folder on their way to the disk.

@@ -63,10 +63,9 @@ RunScore score_scene(const DatasetFiles& dataset, const std::string& scene, cons
                      SegmentField field) {
   const std::string cloud = dataset.cloud_of(scene);
   const std::string truth_path = files.filtered.empty() ? dataset.place(scene, cloud) : files.filtered;
-  const Cloud truth = check_ground_truth(files.filtered.empty()
-                                             ? parse_cloud(dataset.read(scene, cloud), truth_path)
-                                             : read_cloud(truth_path),
-                                         truth_path);
+  const Cloud truth = check_ground_truth(
+      files.filtered.empty() ? parse_cloud(dataset.read(scene, cloud), truth_path) : read_cloud(truth_path),
+      truth_path);
   Cloud labeled;
   if (!files.labeled.empty()) {
     labeled = read_cloud(files.labeled);
@@ -79,8 +78,7 @@ RunScore score_scene(const DatasetFiles& dataset, const std::string& scene, cons
 
   std::optional<SceneTruth> scene_truth;
   if (dataset.has(scene, "scene.json")) {
-    const SceneRecord record =
-        parse_scene_json(dataset.read(scene, "scene.json"), dataset.place(scene, "scene.json"));
+    const SceneRecord record = parse_scene_json(dataset.read(scene, "scene.json"), dataset.place(scene, "scene.json"));
     key.tubes = static_cast<int>(record.scene.tubes.size());
     scene_truth.emplace(record.scene);
   }

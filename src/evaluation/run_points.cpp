@@ -18,8 +18,9 @@ std::optional<LabelledPoints> read_points(const RunScore& run) {
   const Cloud labeled = read_cloud(run.labeled);
   const PairedIds pairs = pair_clouds({filtered, run.filtered}, {labeled, run.labeled});
   LabelledPoints result;
-  result.scanner = parse_scene_json(dataset.read(run.key.scene, "scene.json"), dataset.place(run.key.scene, "scene.json"))
-                       .scene.scanner;
+  result.scanner =
+      parse_scene_json(dataset.read(run.key.scene, "scene.json"), dataset.place(run.key.scene, "scene.json"))
+          .scene.scanner;
   result.ratio = run.key.ratio;
   for (std::size_t i = 0; i < pairs.points.size(); ++i) {
     if (pairs.truth[i] == 0 && pairs.predicted[i] == kNullId) continue;

@@ -78,8 +78,7 @@ RunKey parse_scene_name(const std::string& name) {
   };
   if (digits == 0 || !parse(tubes, tube_count) || !parse(case_text, case_number)) return key;
   // "A1/12000/12345": from case 1000 on, thousands have folders of their own.
-  if (last_slash != slash &&
-      name.substr(slash, last_slash - slash) != fmt::format("/{}", case_number / 1000 * 1000))
+  if (last_slash != slash && name.substr(slash, last_slash - slash) != fmt::format("/{}", case_number / 1000 * 1000))
     return key;
   key.set = group.substr(0, digits);
   key.tubes = tube_count;

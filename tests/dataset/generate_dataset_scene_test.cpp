@@ -246,7 +246,8 @@ class VerifyScene : public Verify {
     ManifestRecord record = *Manifest(data_).find("Q3/001");
     write_text(data_ + "/Q3/001/" + file, bytes);
     record.files[file] = record_bytes(bytes);
-    return fmt::format("{}", fmt::join(verify_scene(DatasetFiles(data_), read_dataset_config(data_), {"Q", 3, 1}, record), "\n"));
+    return fmt::format(
+        "{}", fmt::join(verify_scene(DatasetFiles(data_), read_dataset_config(data_), {"Q", 3, 1}, record), "\n"));
   }
   std::string problems_with(const Cloud& cloud) {
     return problems_with("cloud.pcd", format_cloud(cloud, CloudFormat::pcd_binary));

@@ -71,8 +71,11 @@ TEST(ChooseShard, KubernetesCountsFromZeroAndNeedsTheCount) {
   const ShardChoice choice = choose({{"JOB_COMPLETION_INDEX", "3"}}, "", 8);
   EXPECT_EQ(choice.shard, (Shard{4, 8}));
   EXPECT_EQ(choice.source, "JOB_COMPLETION_INDEX=3, shard count 8");
-  EXPECT_THAT([] { choose({{"JOB_COMPLETION_INDEX", "3"}}); },
-              ThrowsMessage<ConfigError>(HasSubstr("TUBEBIN_SHARD_COUNT")));
+  EXPECT_THAT(
+      [] {
+        choose({{"JOB_COMPLETION_INDEX", "3"}});
+      },
+      ThrowsMessage<ConfigError>(HasSubstr("TUBEBIN_SHARD_COUNT")));
   EXPECT_THROW(choose({{"JOB_COMPLETION_INDEX", "8"}}, "", 8), ConfigError);
 }
 

@@ -40,7 +40,8 @@ ProgramResult run_printed_command(const std::string& out) {
   const std::string mark = "To make exactly what is missing:\n  ";
   const std::size_t begin = out.find(mark);
   if (begin == std::string::npos) return {};
-  const std::string command = out.substr(begin + mark.size(), out.find('\n', begin + mark.size()) - begin - mark.size());
+  const std::string command =
+      out.substr(begin + mark.size(), out.find('\n', begin + mark.size()) - begin - mark.size());
   return Program({"/bin/sh", "-c", "PATH=" TUBEBIN_BIN_DIR ":$PATH; exec " + command}).wait();
 }
 
@@ -102,8 +103,8 @@ TEST_F(Shards, WriteOneFolderAtOnce) {
 
 TEST_F(Shards, AreTakenFromTheEnvironment) {
   {
-    const Variable id("SLURM_ARRAY_TASK_ID", "12"), min("SLURM_ARRAY_TASK_MIN", "10"), max("SLURM_ARRAY_TASK_MAX", "12"),
-        step("SLURM_ARRAY_TASK_STEP", "2"), count("SLURM_ARRAY_TASK_COUNT", "2");
+    const Variable id("SLURM_ARRAY_TASK_ID", "12"), min("SLURM_ARRAY_TASK_MIN", "10"),
+        max("SLURM_ARRAY_TASK_MAX", "12"), step("SLURM_ARRAY_TASK_STEP", "2"), count("SLURM_ARRAY_TASK_COUNT", "2");
     EXPECT_THAT(generate(data_).error, HasSubstr("Part 2 of 2 (SLURM_ARRAY_TASK_ID=12, SLURM_ARRAY_TASK_MIN=10, "));
     EXPECT_EQ(generate(data_, {"--shard-count", "3"}).exit_code, 2);
   }
@@ -136,10 +137,12 @@ TEST_F(Shards, GoOnWhereTheyWereKilled) {
 TEST_F(Shards, LeaveTheUnfinishedScenesOfOthersAlone) {
   fs::create_directories(data_ + "/Q1/.001.other-1-0.partial");
   const auto of = [&](const std::string& part) {
-    return list_scenes([&] {
-      DatasetConfig config = read_dataset_config(one_machine_);
-      return config;
-    }(), parse_shard(part));
+    return list_scenes(
+        [&] {
+          DatasetConfig config = read_dataset_config(one_machine_);
+          return config;
+        }(),
+        parse_shard(part));
   };
   const std::vector<SceneId> first = of("1/2");
   const bool is_first = std::ranges::find(first, SceneId{"Q", 1, 1}) != first.end();
@@ -190,7 +193,8 @@ TEST_F(Merge, NamesWhatIsMissingAndHowToMakeJustThat) {
   const std::size_t there = scene_files(part(1)).size() / 3 + scene_files(part(3)).size() / 3;
   const ProgramResult merged = merge({1, 3});
   EXPECT_EQ(merged.exit_code, 3);
-  EXPECT_THAT(merged.out, HasSubstr(fmt::format("{} of 8 scenes are complete and sound, {} are missing", there, 8 - there)));
+  EXPECT_THAT(merged.out,
+              HasSubstr(fmt::format("{} of 8 scenes are complete and sound, {} are missing", there, 8 - there)));
   for (const SceneId& id : list_scenes(read_dataset_config(data_), {2, 3}))
     EXPECT_THAT(merged.out, HasSubstr("  " + id.name() + "\n"));
   const ProgramResult made = run_printed_command(merged.out);
@@ -263,7 +267,9 @@ TEST_F(Packs, HoldTheSameBytesInOneFileAPart) {
   EXPECT_EQ(all_files(data_), expected_);
   EXPECT_EQ(run_generate_dataset({"--verify", data_}).exit_code, 0);
   // Any order of making gives the same tar.
-  ASSERT_EQ(run_generate_dataset({config_, "--output", folder_ / "again", "--jobs", "1", "--shard", "2/2", "--pack"}).exit_code, 0);
+  ASSERT_EQ(run_generate_dataset({config_, "--output", folder_ / "again", "--jobs", "1", "--shard", "2/2", "--pack"})
+                .exit_code,
+            0);
   EXPECT_EQ(read_text(folder_ / "again/packs/00002-of-00002.tar"), read_text(data_ + "/packs/00002-of-00002.tar"));
   // Again: nothing is left to do.
   const std::string tar = read_text(data_ + "/packs/00001-of-00002.tar");
@@ -286,7 +292,8 @@ TEST_F(Packs, GoOnWhereTheyWereKilled) {
   }
   ASSERT_EQ(Program(arguments).wait().exit_code, 0);
   ASSERT_EQ(generate(folder_ / "undisturbed", {"--cases", "40", "--pack"}).exit_code, 0);
-  EXPECT_EQ(read_text(data_ + "/packs/00001-of-00001.tar"), read_text(folder_ / "undisturbed/packs/00001-of-00001.tar"));
+  EXPECT_EQ(read_text(data_ + "/packs/00001-of-00001.tar"),
+            read_text(folder_ / "undisturbed/packs/00001-of-00001.tar"));
   EXPECT_TRUE(fs::is_empty(data_ + "/Q1"));
 }
 
@@ -333,7 +340,8 @@ std::string recall_of(const std::string& json_text) {
 class ModelShards : public Shards {
  protected:
   ModelShards() { EXPECT_EQ(model(one_machine_, one_results_).exit_code, 0); }
-  ProgramResult model(const std::string& dataset, const std::string& results, std::vector<std::string> more = {}) const {
+  ProgramResult model(const std::string& dataset, const std::string& results,
+                      std::vector<std::string> more = {}) const {
     more.insert(more.begin(), {dataset, "--output", results, "--radius", "0.0125", "--tube-length", "0.2", "--ratios",
                                "0.3,1", "--jobs", "2"});
     return run_program("model_tubes", more);
@@ -382,7 +390,8 @@ TEST_F(ModelShards, ReadPacksDirectly) {
   for (const char* part : {"1/2", "2/2"}) ASSERT_EQ(generate(data_, {"--shard", part, "--pack"}).exit_code, 0);
   ASSERT_EQ(model(data_, results_).exit_code, 0);
   EXPECT_EQ(result_files(results_), result_files(one_results_));
-  const ProgramResult packed = run_program("evaluate", {results_, "--format", "json", "--html", folder_ / "report.html"});
+  const ProgramResult packed =
+      run_program("evaluate", {results_, "--format", "json", "--html", folder_ / "report.html"});
   const ProgramResult loose = run_program("evaluate", {one_results_, "--format", "json"});
   EXPECT_EQ(packed.exit_code, 0) << packed.error;
   EXPECT_EQ(recall_of(packed.out), recall_of(loose.out));

@@ -4,6 +4,7 @@
 #include "evaluation/commands.hpp"
 #include "evaluation/synthetic_results.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/core/tar.hpp"
 #include "tubebin/scan/scanner.hpp"
 
 namespace tubebin {
@@ -182,6 +183,20 @@ TEST_F(EvaluateApp, TheDocumentedForeignAlgorithmIsScored) {
             0.1);  // ten clusters over three tubes: each tube gets the largest piece
   EXPECT_LT(json["groups"][0]["micro_recall"], 0.9);
   EXPECT_THAT(json["missing"], ::testing::IsEmpty());
+
+  // The same from a pack.
+  std::filesystem::create_directories(path("packed/packs"));
+  std::string tar;
+  for (const std::string scene : {"A3/001", "A3/002"})
+    for (const std::string file : {"cloud.pcd", "scene.json"})
+      tar += format_tar_member(scene + "." + file, read_file(path("dataset/" + scene + "/" + file)));
+  testing::write_text(path("packed/packs/one.tar"), tar + format_tar_end());
+  const CommandResult packed = testing::run_command(*python + " " + path("kmeans.py") + " " + path("packed") + " " +
+                                                    path("packed_labels") + " 2>&1");
+  ASSERT_EQ(packed.exit_code, 0) << packed.output;
+  for (const std::string scene : {"A3/001", "A3/002"})
+    EXPECT_EQ(read_file(path("packed_labels/" + scene + ".pcd")), read_file(path("kmeans_labels/" + scene + ".pcd")));
+  EXPECT_EQ(evaluate("packed --predictions packed_labels").exit_code, 0);
 }
 
 }  // namespace
