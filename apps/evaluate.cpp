@@ -12,6 +12,7 @@
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/core/shell_word.hpp"
 #include "tubebin/dataset/manifest.hpp"
 #include "tubebin/dataset/points_of_run.hpp"
 #include "tubebin/dataset/progress.hpp"
@@ -115,9 +116,14 @@ void print_names(const std::vector<std::string>& names, const char* what) {
   if (names.size() > shown) fmt::print(stderr, "  and {} more (--format json names all)\n", names.size() - shown);
 }
 
-void print_gaps(const Evaluation& evaluation) {
+void print_gaps(const Evaluation& evaluation, const std::vector<std::string>& folders) {
   print_names(evaluation.missing, evaluation.missing_counts_as_zero ? "scenes have no prediction and count as zero:"
                                                                     : "runs are not there yet and are left out:");
+  if (!evaluation.missing.empty() && !evaluation.missing_counts_as_zero) {
+    std::string command = "model_tubes --resume";
+    for (const std::string& folder : folders) command += " " + shell_word(folder);
+    fmt::print(stderr, "To make exactly what is missing:\n  {}\n", command);
+  }
   print_names(evaluation.failed, "runs failed and count as zero:");
   for (const std::string& note : evaluation.notes) fmt::print(stderr, "evaluate: {}\n", note);
 }
@@ -163,7 +169,7 @@ int evaluate_folders(const Arguments& arguments) {
   const Evaluation evaluation = read_evaluation(arguments);
   const GenerationSeconds generation = generation_seconds(evaluation);
   fmt::print("{}", format_results(evaluation, kFormats.at(arguments.format), arguments.paper ? &generation : nullptr));
-  print_gaps(evaluation);
+  print_gaps(evaluation, arguments.folders);
   if (!arguments.html.empty())
     write_file_atomically(arguments.html, format_html_report({evaluation, generation, points_of_run}));
   if (!arguments.plots.empty()) write_plots(arguments.plots, paper_plots(summarize(evaluation.runs), generation));

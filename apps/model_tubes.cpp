@@ -37,6 +37,7 @@ done (each is named); 130 and 143 interrupted by Ctrl-C or SIGTERM.)";
 struct Arguments {
   std::string input;
   std::string output;
+  std::vector<std::string> resume;
   std::string config;
   std::string method;
   std::optional<double> ratio;
@@ -54,10 +55,9 @@ struct Arguments {
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("CLOUD_OR_DATASET", arguments.input,
-                 "A .pcd or .ply file, or a data set: its folder, or a .tar that --pack made")
-      ->required();
-  app.add_option("-o,--output", arguments.output, "Folder of the results")->type_name("DIR")->required();
+  auto* input = app.add_option("CLOUD_OR_DATASET", arguments.input,
+                               "A .pcd or .ply file, or a data set: its folder, or a .tar that --pack made");
+  auto* output = app.add_option("-o,--output", arguments.output, "Folder of the results")->type_name("DIR");
   app.add_option("-c,--config", arguments.config, "Options (YAML, see docs/modeling.md)")->type_name("modeling.yaml");
   app.add_option("--method", arguments.method, "centerline, region_growing, or both (data sets only)")
       ->check(CLI::IsMember({"centerline", "region_growing", "both"}));
@@ -81,6 +81,12 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--shard-count", arguments.shard_count, "N, where a scheduler says I alone (Kubernetes)")
       ->check(CLI::Range(1, 1000000))
       ->envname("TUBEBIN_SHARD_COUNT");
+  app.add_option("--resume", arguments.resume,
+                 "Do the runs that results folders lack, by their own options: one folder, or those of a call's parts, "
+                 "into the first")
+      ->type_name("RESULTS...")
+      ->excludes(input)
+      ->excludes(output);
   app.add_flag("--keep-clouds", arguments.keep_clouds, "Also write filtered.pcd and labeled.pcd of a data set's runs");
   app.add_flag_callback(
       "--config-reference",
@@ -139,29 +145,35 @@ int model_one(const Arguments& arguments) {
 /// A folder, or a pack of scenes.
 bool is_dataset(const std::string& path) { return fs::is_directory(path) || fs::path(path).extension() == ".tar"; }
 
-int model_many(const Arguments& arguments) {
+BatchOptions batch_options(const Arguments& arguments, const ModelConfig& config) {
   if (arguments.scale != 1.0) throw_config_error("--scale is for single files; data sets are in metres");
   if (arguments.ratio && !arguments.ratios.empty()) throw_config_error("--ratio and --ratios say the same: give one");
-  const ModelConfig config = resolve_config(arguments);
-  BatchOptions options{.dataset = arguments.input,
-                       .results = arguments.output,
-                       .methods = {config.modeling.method},
-                       .ratios = {config.modeling.filtering.ratio},
-                       .jobs = arguments.jobs,
-                       .cases = arguments.cases,
-                       .keep_clouds = arguments.keep_clouds,
-                       .shard = std::nullopt};
+  BatchOptions options;
+  options.dataset = arguments.input;
+  options.results = arguments.output;
+  options.methods = {config.modeling.method};
+  options.ratios = {config.modeling.filtering.ratio};
+  options.cases = arguments.cases;
   if (arguments.method == "both") options.methods = {ModelingMethod::centerline, ModelingMethod::region_growing};
   if (!arguments.ratios.empty()) options.ratios = parse_ratios(arguments.ratios);
-  if (const ShardChoice choice = choose_shard(arguments.shard, arguments.shard_count, std::getenv);
-      choice.is_sharded()) {
-    options.shard = choice.shard;
-    if (!arguments.quiet)
-      options.on_dealt = [choice](std::size_t own, std::size_t all, double share) {
-        fmt::print(stderr, "Part {} of {} ({}): {} of {} clouds, {:.1f} % of the work\n", choice.shard.index,
-                   choice.shard.count, choice.source, own, all, 100.0 * share);
-      };
-  }
+  return options;
+}
+
+void choose_part(BatchOptions& options, const Arguments& arguments) {
+  const ShardChoice choice = choose_shard(arguments.shard, arguments.shard_count, std::getenv);
+  if (!choice.is_sharded()) return;
+  options.shard = choice.shard;
+  if (arguments.quiet) return;
+  options.on_dealt = [choice](std::size_t own, std::size_t all, double share) {
+    fmt::print(stderr, "Part {} of {} ({}): {} of {} clouds, {:.1f} % of the work\n", choice.shard.index,
+               choice.shard.count, choice.source, own, all, 100.0 * share);
+  };
+}
+
+int model_many(BatchOptions options, const ModelConfig& config, const Arguments& arguments) {
+  options.jobs = arguments.jobs;
+  options.keep_clouds = arguments.keep_clouds;
+  choose_part(options, arguments);
   const BatchReport report =
       model_dataset(options, config, arguments.quiet ? Progress::Style::none : Progress::Style::automatic);
   for (const std::string& failed : report.failed) fmt::print(stderr, "{}\n", failed);
@@ -169,10 +181,28 @@ int model_many(const Arguments& arguments) {
     fmt::print(stderr, "Interrupted after {} of {} runs; they are kept. Run the same command again for the rest.\n",
                report.complete_before + report.made, report.runs);
   else
-    fmt::print("{}: {} runs, {} made in {:.1f} s, {} there before, {} failed\n", arguments.output, report.runs,
+    fmt::print("{}: {} runs, {} made in {:.1f} s, {} there before, {} failed\n", options.results, report.runs,
                report.made, report.seconds, report.complete_before, report.failed.size());
   if (report.signal != 0) return 128 + report.signal;
   return static_cast<int>(report.failed.empty() ? ExitCode::done : ExitCode::incomplete);
+}
+
+/// Everything but what to do it with is as the first call said.
+int resume(const Arguments& arguments) {
+  if (!arguments.config.empty() || !arguments.method.empty() || arguments.ratio || !arguments.ratios.empty() ||
+      arguments.radius || arguments.tube_length || arguments.seed || arguments.cases > 0)
+    throw_config_error("--resume takes the options of the modeller from {}/index.json", arguments.resume.front());
+  const ResumedBatch batch = resume_batch(arguments.resume);
+  return model_many(batch.options, batch.config, arguments);
+}
+
+int run(const Arguments& arguments) {
+  if (!arguments.resume.empty()) return resume(arguments);
+  if (arguments.input.empty() || arguments.output.empty())
+    throw_config_error("CLOUD_OR_DATASET and --output DIR are needed; --help shows examples");
+  if (!is_dataset(arguments.input)) return model_one(arguments);
+  const ModelConfig config = resolve_config(arguments);
+  return model_many(batch_options(arguments, config), config, arguments);
 }
 
 }  // namespace
@@ -185,7 +215,7 @@ int main(int argc, char** argv) {
   add_options(app, arguments);
   try {
     app.parse(argc, argv);
-    return is_dataset(arguments.input) ? model_many(arguments) : model_one(arguments);
+    return run(arguments);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
   } catch (const ConfigError& error) {

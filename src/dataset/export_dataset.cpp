@@ -57,7 +57,8 @@ struct Source {
 };
 
 std::vector<Source> list_sources(const DatasetFiles& dataset) {
-  if (!fs::exists(dataset.dataset())) throw_io_error("{}: is no data set: not there", dataset.dataset());
+  if (!fs::exists(dataset.dataset()))
+    throw_io_error("{}: is no data set: not a folder and not a pack", dataset.dataset());
   std::vector<Source> sources;
   for (const CloudFile& cloud : find_clouds(dataset)) {
     if (cloud.scene == ".") throw_io_error("{}: is a single scene; give the folder of its data set", dataset.dataset());

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "scene_check.hpp"
+#include "tubebin/core/shell_word.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
 #include "tubebin/dataset/whole_folder.hpp"
 #include "tubebin/dataset/worker_pool.hpp"
@@ -47,17 +48,6 @@ std::vector<std::string> other_folders(const std::string& output, const std::vec
     if (!fs::equivalent(folder, output, error)) others.push_back(folder);
   }
   return others;
-}
-
-/// Of a shell's word.
-std::string quote(const std::string& text) {
-  if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+-=:,@%") ==
-          std::string::npos &&
-      !text.empty())
-    return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 /// One merge: the scenes that are asked for, and where each may come from.
@@ -185,10 +175,10 @@ class Merge {
     // Parts may still be at work in a folder that isn't complete.
     if (is_joined || (report_.missing.empty() && damaged_.empty())) output_.manifest().rewrite(scenes_);
     if (!damaged_.empty() && !is_joined)
-      report_.commands.push_back(fmt::format("generate_dataset --verify {} --repair", quote(folder)));
+      report_.commands.push_back(fmt::format("generate_dataset --verify {} --repair", shell_word(folder)));
     if (!report_.missing.empty() || (!damaged_.empty() && is_joined))
       report_.commands.push_back(
-          fmt::format("generate_dataset {} --output {}", quote(folder + "/config.yaml"), quote(folder)));
+          fmt::format("generate_dataset {} --output {}", shell_word(folder + "/config.yaml"), shell_word(folder)));
     if (is_joined) report_.missing.insert(report_.missing.end(), damaged_.begin(), damaged_.end());
   }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <set>
 
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
@@ -41,6 +42,10 @@ struct Run {
 /// The data set's clouds, of each set and number of tubes the first ones alone where options say so.
 std::vector<CloudFile> choose_clouds(const DatasetFiles& files, const BatchOptions& options) {
   std::vector<CloudFile> clouds = find_clouds(files);
+  if (!options.scenes.empty()) {
+    const std::set<std::string> wanted(options.scenes.begin(), options.scenes.end());
+    std::erase_if(clouds, [&](const CloudFile& cloud) { return !wanted.contains(cloud.scene); });
+  }
   if (options.cases > 0) {
     std::map<std::string, int> taken;
     std::erase_if(clouds, [&](const CloudFile& cloud) {
@@ -232,6 +237,12 @@ std::vector<Run> list_runs(const BatchOptions& options, const std::vector<CloudF
   return runs;
 }
 
+bool has_run(const BatchOptions& options, const Run& run) {
+  return fs::exists(options.results + "/" + run.folder()) ||
+         std::ranges::any_of(options.other_results,
+                             [&](const std::string& other) { return fs::exists(other + "/" + run.folder()); });
+}
+
 /// Removes what a killed run left of the runs that it was writing; at the end, too, what an interrupted one leaves.
 class NothingUnfinished {
  public:
@@ -270,7 +281,7 @@ BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config
   const std::vector<Run> runs = list_runs(options, clouds);
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < runs.size(); ++i)
-    if (!fs::exists(options.results + "/" + runs[i].folder())) missing.push_back(i);
+    if (!has_run(options, runs[i])) missing.push_back(i);
 
   BatchReport report{.runs = runs.size(), .complete_before = runs.size() - missing.size(), .failed = {}};
   Progress progress(missing.size(), "clouds", progress_style);

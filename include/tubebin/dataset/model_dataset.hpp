@@ -22,6 +22,8 @@ struct BatchOptions {
   int cases = 0;              ///< of each set and number of tubes, the first ones; 0: all
   double time_limit = 600.0;  ///< seconds a run
   bool keep_clouds = false;
+  std::vector<std::string> scenes = {};         ///< these alone; empty: all
+  std::vector<std::string> other_results = {};  ///< runs that one of these folders has are not done again
   std::optional<Shard> shard;  ///< does the runs of a part of the clouds only, while others may do the other parts
   /// Told, before a part's work begins, how many of how many clouds are its own, and their share of the work.
   std::function<void(std::size_t own, std::size_t all, double share)> on_dealt = [](auto...) {};
@@ -38,6 +40,14 @@ struct BatchReport {
 
 /// "0.1:1.0:0.1" (first, last, step) or "0.1,0.3,1". Throws ConfigError.
 std::vector<double> parse_ratios(const std::string& text);
+
+/// The call that results folders, one or those of its parts, were made with, for the runs that none of them has yet. They
+/// go into the first one. Throws IoError where it is no results folder, ConfigError where another version made it.
+struct ResumedBatch {
+  BatchOptions options;
+  ModelConfig config;
+};
+ResumedBatch resume_batch(const std::vector<std::string>& results);
 
 /// Does the runs that the results folder does not have yet. Throws IoError, and ConfigError where the folder holds
 /// results of another data set, other options or another seed.
