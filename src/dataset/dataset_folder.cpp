@@ -90,7 +90,10 @@ void DatasetFolder::remove_unfinished() const {
   else store_.remove_unfinished(list_scenes(config_), SceneStore::Unfinished::all);
 }
 
-DatasetFolder::~DatasetFolder() try { remove_unfinished(); } catch (const IoError&) {  // the next run tries again
+DatasetFolder::~DatasetFolder() try {
+  // Of a part, the next run does it: another host may have been given this one's work.
+  if (!part_) remove_unfinished();
+} catch (const IoError&) {  // the next run tries again
 }
 
 bool DatasetFolder::is_complete(const std::string& scene_name) const {

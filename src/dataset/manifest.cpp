@@ -54,7 +54,7 @@ std::vector<std::string> list_parts(const std::string& folder) {
 std::string make_part(const std::string& folder, const std::string& part) {
   std::filesystem::create_directories(folder + kParts);
   for (int number = 0;; ++number) {
-    const std::string path = fmt::format("{}{}/{}.{}-{}.jsonl", folder, kParts, part, process_name(), number);
+    std::string path = fmt::format("{}{}/{}.{}-{}.jsonl", folder, kParts, part, process_name(), number);
     const FileDescriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.get() >= 0) return path;
     if (errno != EEXIST) throw_io_error("{}: cannot be written: {}", path, std::strerror(errno));

@@ -104,7 +104,7 @@ class Merge {
       for (const std::string& problem : found)
         problems.push_back(fmt::format("{}/{}: {}", sources_[k].folder, scene, problem));
     }
-    const std::string text = fmt::format("{}\n{}", taken ? std::to_string(*taken) : "none", fmt::join(problems, "\n"));
+    std::string text = fmt::format("{}\n{}", taken ? std::to_string(*taken) : "none", fmt::join(problems, "\n"));
     if (!taken || *taken == 0 || is_packed(*taken, scene)) return successful_attempt(text);
     return successful_attempt([text, arrive = link_scene(*taken, scene)] {
       arrive();

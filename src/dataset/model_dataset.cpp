@@ -246,11 +246,14 @@ bool has_run(const BatchOptions& options, const Run& run) {
 /// Removes what a killed run left of the runs that it was writing; at the end, too, what an interrupted one leaves.
 class NothingUnfinished {
  public:
-  NothingUnfinished(std::string results, const std::vector<CloudFile>& clouds)
-      : results_(std::move(results)), clouds_(clouds) {
+  NothingUnfinished(const BatchOptions& options, const std::vector<CloudFile>& clouds)
+      : results_(options.results), is_part_(options.shard.has_value()), clouds_(clouds) {
     remove();
   }
-  ~NothingUnfinished() try { remove(); } catch (const std::exception&) {  // the next call tries again
+  ~NothingUnfinished() try {
+    // Of a part, the next call does it: another host may have been given this one's work.
+    if (!is_part_) remove();
+  } catch (const std::exception&) {  // the next call tries again
   }
   NothingUnfinished(const NothingUnfinished&) = delete;
   NothingUnfinished& operator=(const NothingUnfinished&) = delete;
@@ -263,6 +266,7 @@ class NothingUnfinished {
   }
 
   std::string results_;
+  bool is_part_;
   const std::vector<CloudFile>& clouds_;
 };
 
@@ -276,7 +280,7 @@ BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config
   fs::create_directories(options.results);
   const FolderLock lock(options.results, options.shard ? FolderLock::Kind::part : FolderLock::Kind::exclusive);
   settle_index(options, config, all_clouds);
-  const NothingUnfinished nothing_unfinished(options.results, clouds);
+  const NothingUnfinished nothing_unfinished(options, clouds);
 
   const std::vector<Run> runs = list_runs(options, clouds);
   std::vector<std::size_t> missing;

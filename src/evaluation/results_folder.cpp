@@ -212,8 +212,8 @@ Evaluation read_results(const std::vector<std::string>& folders, const ResultsOp
   Evaluation evaluation;
   std::vector<FolderRuns> read;
   for (const std::string& folder : folders) read.push_back(read_folder(folder, options, evaluation));
-  require_distinct_runs(evaluation);
   require_same_conditions(read);
+  require_distinct_runs(evaluation);
   if (folders.size() > 1) {
     keep_really_missing(evaluation);
     sort_runs(evaluation);

@@ -84,9 +84,9 @@ std::string DatasetFiles::cloud_of(const std::string& scene) const {
 
 std::vector<std::string> DatasetFiles::scenes() const try {
   std::set<std::string> scenes;
-  for (const auto& [scene, files] : packed_)
-    if (std::ranges::any_of(kClouds, [&](const char* file) { return find_packed(scene, file) != nullptr; }))
-      scenes.insert(scene);
+  for (const auto& packed : packed_)
+    if (std::ranges::any_of(kClouds, [&](const char* file) { return find_packed(packed.first, file) != nullptr; }))
+      scenes.insert(packed.first);
   if (!is_folder_) return {scenes.begin(), scenes.end()};
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dataset_)) {
     const fs::path& path = entry.path();

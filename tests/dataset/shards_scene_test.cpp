@@ -153,6 +153,24 @@ TEST_F(Shards, LeaveTheUnfinishedScenesOfOthersAlone) {
   EXPECT_FALSE(fs::exists(data_ + "/Q1/.001.other-1-0.partial"));
 }
 
+TEST_F(Shards, RunTwiceAtOnceDoNoHarm) {
+  // As where a scheduler gives a lost node's task to another, and the node was only unreachable.
+  std::vector<std::string> arguments = command(data_, {"--shard", "1/2"});
+  arguments.insert(arguments.begin(), program_path("generate_dataset"));
+  for (int round = 0; round < 4; ++round) {
+    fs::remove_all(data_);
+    Program lost(arguments);
+    std::this_thread::sleep_for(std::chrono::milliseconds(30 * round));
+    Program other(arguments);
+    const ProgramResult end = lost.wait();
+    EXPECT_TRUE(end.exit_code == 0 || end.exit_code == 1) << end.error;  // its unfinished scene may be cleared away
+    EXPECT_EQ(other.wait().exit_code, 0);
+    EXPECT_EQ(generate(data_, {"--shard", "2/2"}).exit_code, 0);
+    EXPECT_EQ(run_generate_dataset({"--merge", data_}).exit_code, 0);
+    expect_as_of_one_machine(data_);
+  }
+}
+
 TEST_F(Shards, KeepOutWhoWantsTheFolderForHimself) {
   const FolderLock part((fs::create_directories(data_), data_), FolderLock::Kind::part);
   EXPECT_EQ(generate(data_, {"--shard", "1/2"}).exit_code, 0);

@@ -12,8 +12,8 @@ skip() {
   echo "skipped: $*"
   exit 77
 }
-for program in munged munge slurmctld slurmd sbatch scontrol squeue sinfo; do
-  command -v "$program" > /dev/null || skip "$program is not installed (Debian: slurm-wlm munge)"
+for program in munged munge slurmctld slurmd sbatch scontrol squeue sinfo python3 pgrep; do
+  command -v "$program" > /dev/null || skip "$program is not installed (Debian: slurm-wlm munge python3 procps)"
 done
 [ "$(id -u)" -eq 0 ] || skip "slurmd needs root"
 

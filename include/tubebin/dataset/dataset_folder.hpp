@@ -28,7 +28,7 @@ class DatasetFolder {
   /// The same for a part of the scenes, while others may make the other parts: touches nothing but these scenes.
   DatasetFolder(const std::string& folder, const DatasetConfig& config, const Shard& shard);
 
-  /// Removes what workers were stopped in the middle of.
+  /// Removes what workers were stopped in the middle of, but for a part.
   ~DatasetFolder();
   DatasetFolder(const DatasetFolder&) = delete;
   DatasetFolder& operator=(const DatasetFolder&) = delete;
