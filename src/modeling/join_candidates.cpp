@@ -5,7 +5,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "tubebin/modeling/branch_joining.hpp"
+#include "tubebin/modeling/branch_links.hpp"
 
 namespace tubebin {
 namespace {

@@ -167,7 +167,7 @@ ModelingResult model_tubes(const ModelingInput& input, const ModelingOptions& op
     watch.lap(result.seconds.fitting);
     const OcclusionTest occlusion(input, projection, cloud.spacing * std::sqrt(options.filtering.ratio), result.radius);
     Joining joining = join_pieces(pieces, occlusion, options.tube_length);
-    result.tubes = joining.tubes_branch ? join_branches(std::move(joining.paths), result.radius, occlusion)
+    result.tubes = joining.tubes_branch ? join_branches(joining.paths, result.radius, occlusion, options.tube_length)
                                         : unbranched(std::move(joining.paths), result.radius);
     result.tube_length = joining.tube_length;
     watch.lap(result.seconds.joining);

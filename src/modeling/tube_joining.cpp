@@ -20,6 +20,8 @@ constexpr double kShortCostLimit = 10.0;
 constexpr double kFragmentCostLimit = 3.0;
 /// A join is ruled out where the scan is e^9 times likelier without it.
 constexpr double kJoinCostLimit = 9.0;
+/// And clear where it is e^2 times likelier with it.
+constexpr double kClearJoinCost = -2.0;
 constexpr std::size_t kNodeLimit = 2000;
 /// The right join is among an end's cheapest few, or it could not be told from chance anyhow.
 constexpr std::size_t kJoinsPerEnd = 4;
@@ -270,16 +272,21 @@ class Joiner {
   void decide_whether_tubes_branch() {
     const auto pieces = std::count_if(pieces_.begin(), pieces_.end(), [](const auto& p) { return !is_fragment(p); });
     const auto branches = std::count_if(ends_.begin(), ends_.end(), [](const PieceEnd& end) { return end.is_on_side; });
-    tubes_branch_ = branches >= 2 && 8 * branches >= pieces;
+    tubes_branch_ = branches >= 2 && 14 * branches >= pieces;
     if (!tubes_branch_)
       for (PieceEnd& end : ends_) end.is_on_side = false;
   }
 
-  /// Without a length to explain, a join has to be likelier than not by itself.
+  /// Without a length to explain, a join has to be likelier than not by itself. Where tubes branch, those that are not
+  /// clearly so are left to join_branches, which weighs them against branches.
+  double cost_limit() const {
+    if (tubes_branch_) return kClearJoinCost;
+    return tube_length_ > 0.0 ? kJoinCostLimit : 0.0;
+  }
+
   void find_joins() {
-    joins_ = find_join_candidates(
-        pieces_, ends_, occlusion_, bending_rate_,
-        {.cost = tube_length_ > 0.0 ? kJoinCostLimit : 0.0, .length = longest(), .joins_per_end = kJoinsPerEnd});
+    joins_ = find_join_candidates(pieces_, ends_, occlusion_, bending_rate_,
+                                  {.cost = cost_limit(), .length = longest(), .joins_per_end = kJoinsPerEnd});
     bridge_lengths_.clear();
     joins_of_end_.assign(ends_.size(), {});
     for (std::uint32_t j = 0; j < joins_.size(); ++j) {

@@ -1,7 +1,6 @@
-/// Where tubes branch: paths that start on another path's side are one tube with it.
+/// Where tubes branch: paths that hang together are one tube.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "tubebin/modeling/occlusion.hpp"
@@ -9,15 +8,11 @@
 
 namespace tubebin {
 
-/// Where a path that ends at `tip`, leading `outward` (unit), meets the path through `nodes` as a branch does: it ends
-/// nearer to that one's centreline than a radius, where no other tube's end can be, and leads to it. Not so near the
-/// other path's own ends, where one may go on as the other.
-std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const std::vector<Vec3>& nodes, double radius);
-
-/// Tubes of the paths: those that branch off one another together, each branch led up to the centreline that it
-/// branches off. Ends that vanish behind something on their straight way to another path's side, within six radii, are
-/// branches too.
-std::vector<TubeModel> join_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion);
+/// The tubes, as sets of paths, that explain the scan best: links (branch_links.hpp) by their likelihood, and the length
+/// of all paths together as common to the scene's tubes as `tube_length` says (metres; 0: what those in sight agree on,
+/// if they do). Each branch is led up to the centreline that it branches off.
+std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double radius, const OcclusionTest& occlusion,
+                                     double tube_length);
 
 /// One tube for each path.
 std::vector<TubeModel> unbranched(std::vector<TubePath> paths, double radius);
