@@ -104,7 +104,7 @@ class TreeJoiner {
     tube_length_ = tube_length;
     trees_.clear();
     tree_of_key_.clear();
-    for (Tree tree : singles_) {
+    for (const Tree& tree : singles_) {
       budget_ = kTreesPerPath;
       grow(tree);
     }
