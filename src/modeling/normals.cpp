@@ -3,15 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include "tubebin/core/wide.hpp"
 #include "tubebin/modeling/view_grid.hpp"
 
-// The sums over neighbours are the most of the modeler's arithmetic: where the processor has wider registers, they are
-// used. The sums' order is the same in both, and nothing is fused, so the results are the same to the bit.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define TUBEBIN_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define TUBEBIN_WIDE
-#endif
+// The sums over neighbours are the most of the modeler's arithmetic, hence TUBEBIN_WIDE.
 
 namespace tubebin {
 namespace {

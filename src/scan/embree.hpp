@@ -22,12 +22,27 @@ inline void intersect(RTCScene scene, QueryContext& context, RTCRayHit& ray) {
   arguments.context = &context;
   rtcIntersect1(scene, &ray, &arguments);
 }
+
+/// Neighbouring rays; those with valid[i] = 0 are left out, the others have -1.
+inline void intersect(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect8(valid, scene, &rays, &arguments);
+}
 #else
 using QueryContext = RTCIntersectContext;
 
 inline void init_context(QueryContext& context) { rtcInitIntersectContext(&context); }
 
 inline void intersect(RTCScene scene, QueryContext& context, RTCRayHit& ray) { rtcIntersect1(scene, &context, &ray); }
+
+/// Neighbouring rays; those with valid[i] = 0 are left out, the others have -1.
+inline void intersect(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(valid, scene, &context, &rays);
+}
 #endif
 
 template <typename Handle, void (*release)(Handle)>

@@ -1,6 +1,6 @@
 // Convex solids against rays from the origin, in double precision. A ray is t * direction; a convex solid
 // takes one interval of t from it, negative t included, so a solid around the origin needs no case of its
-// own.
+// own. The formulas are written once for `Real`, one ray's double or the lanes of several rays.
 #pragma once
 
 #include <limits>
@@ -17,6 +17,17 @@ struct Interval {
   bool empty() const { return !(begin <= end); }
 };
 
+template <typename Real>
+struct DirectionOf {
+  Real x, y, z;
+};
+
+/// Empty unless begin <= end.
+template <typename Real>
+struct IntervalOf {
+  Real begin, end;
+};
+
 /// A solid cylinder with flat caps.
 class SolidCylinder {
  public:
@@ -26,6 +37,8 @@ class SolidCylinder {
   Interval intersect(const Vec3& direction) const { return intersect(direction, radius_); }
   /// As if it had another radius; where both go through a cap, both give that cap's t bit by bit.
   Interval intersect(const Vec3& direction, double radius) const;
+  template <typename Real>
+  void intersect(const DirectionOf<Real>& direction, double radius, IntervalOf<Real>& inside) const;
   Eigen::AlignedBox3d bounds() const;
 
   const Vec3& base() const { return base_; }
@@ -51,6 +64,8 @@ class SolidSphere {
   Interval intersect(const Vec3& direction) const { return intersect(direction, radius_); }
   /// As if it had another radius.
   Interval intersect(const Vec3& direction, double radius) const;
+  template <typename Real>
+  void intersect(const DirectionOf<Real>& direction, double radius, IntervalOf<Real>& inside) const;
   Eigen::AlignedBox3d bounds() const;
 
   const Vec3& center() const { return center_; }
@@ -62,14 +77,16 @@ class SolidSphere {
 };
 
 /// 1 / direction, finite: a ray within a face's plane touches the box.
+template <typename Real>
+void invert(const DirectionOf<Real>& direction, DirectionOf<Real>& inverse);
 Vec3 inverse_direction(const Vec3& direction);
 
 /// An axis-aligned solid box (Kay and Kajiya 1986, "Ray tracing complex scenes"). Many boxes share one ray's
 /// inverse.
-inline Interval intersect(const Eigen::AlignedBox3d& box, const Vec3& inverse_direction) {
-  const Vec3 a = box.min().cwiseProduct(inverse_direction);
-  const Vec3 b = box.max().cwiseProduct(inverse_direction);
-  return {a.cwiseMin(b).maxCoeff(), a.cwiseMax(b).minCoeff()};
-}
+template <typename Real>
+void intersect(const Eigen::AlignedBox3d& box, const DirectionOf<Real>& inverse_direction, IntervalOf<Real>& inside);
+Interval intersect(const Eigen::AlignedBox3d& box, const Vec3& inverse_direction);
 
 }  // namespace tubebin
+
+#include "scan/exact_shapes_formulas.hpp"

@@ -19,37 +19,11 @@ constexpr double kBoundsPadding = 32.0 * 0x1p-24;
 /// The single precision bound just beyond a depth, so that what is equally deep is still looked at.
 float beyond(double depth) { return static_cast<float>(std::max(depth, 0.0)) * (1.0F + 0x1p-22F) + 1e-9F; }
 
-/// What Embree hands through to the callbacks of one ray.
-struct RayQuery : embree::QueryContext {
-  RayQuery(const Vec3& ray_direction, double ray_depth_min) : direction(ray_direction), depth_min(ray_depth_min) {
-    embree::init_context(*this);
-  }
+/// What Embree hands through to the callbacks. A ray's id is its lane.
+struct PacketQuery : embree::QueryContext {
+  explicit PacketQuery(RayPacket& rays) : packet(rays) { embree::init_context(*this); }
 
-  /// Equal depths go to the lower label, so that the result does not depend on the order of traversal.
-  void offer(const Interval& inside, Label label) {
-    if (inside.empty() || inside.end < depth_min) return;
-    if (inside.begin < depth_min) begins_inside = true;
-    if (inside.begin < first.depth || (inside.begin == first.depth && label < first.label)) {
-      first = {inside.begin, label};
-      enters_bore = false;
-    }
-  }
-
-  template <typename Solid>
-  void offer(const Labelled<Solid>& labelled) {
-    const Interval inside = labelled.solid.intersect(direction);
-    offer(inside, labelled.label);
-    if (labelled.bore_radius == 0.0 || inside.empty() || first.label != labelled.label || first.depth != inside.begin)
-      return;
-    // Only a cap's plane gives the solid and its bore the same first point.
-    enters_bore |= labelled.solid.intersect(direction, labelled.bore_radius).begin == inside.begin;
-  }
-
-  Vec3 direction;
-  double depth_min;
-  Hit first;
-  bool begins_inside = false;
-  bool enters_bore = false;  ///< at `first`, through the open end of a hollow tube
+  RayPacket& packet;
 };
 
 template <typename Solid>
@@ -71,13 +45,18 @@ void solid_bounds(const RTCBoundsFunctionArguments* arguments) {
   bounds.upper_z = high.z();
 }
 
+/// Rays that Embree has not found near the solid are looked at too: it is as much a part of their scene.
 template <typename Solid>
 void intersect_solid(const RTCIntersectFunctionNArguments* arguments) {
   const auto& solid = (*static_cast<const Solids<Solid>*>(arguments->geometryUserPtr))[arguments->primID];
-  auto& query = *static_cast<RayQuery*>(arguments->context);
-  query.offer(solid);
-  auto& ray = reinterpret_cast<RTCRayHit*>(arguments->rayhit)->ray;
-  ray.tfar = std::min(ray.tfar, beyond(query.first.depth));
+  RayPacket& packet = static_cast<PacketQuery*>(arguments->context)->packet;
+  packet.offer(solid);
+  RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, arguments->N);
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    float& search_end = RTCRayN_tfar(rays, arguments->N, i);
+    const int lane = static_cast<int>(RTCRayN_id(rays, arguments->N, i));
+    search_end = std::min(search_end, beyond(packet.depth(lane)));
+  }
 }
 
 template <typename Solid>
@@ -96,17 +75,7 @@ void check_device(const embree::Device& device) {
   if (error != RTC_ERROR_NONE) throw std::runtime_error(fmt::format("Embree failed with error {}", int{error}));
 }
 
-RTCRayHit make_ray(const Vec3& direction, double depth_min, double depth_max) {
-  RTCRayHit hit{};
-  hit.ray.dir_x = static_cast<float>(direction.x());
-  hit.ray.dir_y = static_cast<float>(direction.y());
-  hit.ray.dir_z = static_cast<float>(direction.z());
-  hit.ray.tnear = std::max(0.0F, static_cast<float>(depth_min) * (1.0F - 0x1p-22F));
-  hit.ray.tfar = beyond(depth_max);
-  hit.ray.mask = ~0U;
-  hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  return hit;
-}
+float search_start(double depth_min) { return std::max(0.0F, static_cast<float>(depth_min) * (1.0F - 0x1p-22F)); }
 
 }  // namespace
 
@@ -179,13 +148,50 @@ RayCaster::RayCaster(SceneSolids solids, double depth_min, double depth_max)
   check_device(device_);
 }
 
+float RayCaster::search_end(const RayPacket& packet, int lane) const {
+  return beyond(std::min(depth_max_, packet.depth(lane)));
+}
+
 Hit RayCaster::first_hit(const Vec3& direction) const {
-  RayQuery query(direction, depth_min_);
-  const Vec3 inverse = inverse_direction(direction);
-  for (const Box& box : solids_.bin) query.offer(intersect(box, inverse), 0);
-  RTCRayHit ray = make_ray(direction, depth_min_, std::min(depth_max_, query.first.depth));
+  RayPacket packet({&direction, 1}, depth_min_);
+  packet.offer_bin(solids_.bin);
+  RTCRayHit ray{};
+  ray.ray.dir_x = static_cast<float>(direction.x());
+  ray.ray.dir_y = static_cast<float>(direction.y());
+  ray.ray.dir_z = static_cast<float>(direction.z());
+  ray.ray.tnear = search_start(depth_min_);
+  ray.ray.tfar = search_end(packet, 0);
+  ray.ray.mask = ~0U;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  PacketQuery query(packet);
   embree::intersect(scene_.get(), query, ray);
-  const Hit hit = query.begins_inside || query.enters_bore ? first_boundary_hit(direction) : query.first;
+  return decide(packet, 0);
+}
+
+void RayCaster::first_hits(std::span<const Vec3> directions, std::span<Hit> hits) const {
+  RayPacket packet(directions, depth_min_);
+  packet.offer_bin(solids_.bin);
+  alignas(32) int valid[kLanes];
+  RTCRayHit8 rays{};
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Vec3 direction = packet.direction(lane);
+    valid[lane] = lane < static_cast<int>(directions.size()) ? -1 : 0;
+    rays.ray.dir_x[lane] = static_cast<float>(direction.x());
+    rays.ray.dir_y[lane] = static_cast<float>(direction.y());
+    rays.ray.dir_z[lane] = static_cast<float>(direction.z());
+    rays.ray.tnear[lane] = search_start(depth_min_);
+    rays.ray.tfar[lane] = search_end(packet, lane);
+    rays.ray.mask[lane] = ~0U;
+    rays.ray.id[lane] = static_cast<unsigned>(lane);
+    rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+  }
+  PacketQuery query(packet);
+  embree::intersect(valid, scene_.get(), query, rays);
+  for (std::size_t lane = 0; lane < directions.size(); ++lane) hits[lane] = decide(packet, static_cast<int>(lane));
+}
+
+Hit RayCaster::decide(const RayPacket& packet, int lane) const {
+  const Hit hit = packet.is_special(lane) ? first_boundary_hit(packet.direction(lane)) : packet.first(lane);
   return hit.depth <= depth_max_ ? hit : Hit{};
 }
 

@@ -2,20 +2,16 @@
 // decides.
 #pragma once
 
+#include <span>
+
 #include "scan/embree.hpp"
+#include "scan/ray_packet.hpp"
 #include "scan/scene_solids.hpp"
 
 namespace tubebin {
 
 /// Metres. A floor at exactly range_max is within range whatever the rounding of a ray's direction.
 constexpr double kDepthTolerance = 1e-9;
-
-struct Hit {
-  double depth = std::numeric_limits<double>::infinity();  ///< along the optical axis, metres; infinity: nothing
-  Label label = 0;
-
-  bool found() const { return depth < std::numeric_limits<double>::infinity(); }
-};
 
 /// Where a body that consists of convex solids first begins or ends at depth_min or beyond; `parts`, its solids along the
 /// ray, are sorted.
@@ -36,8 +32,13 @@ class RayCaster {
   /// between the solids of one body are no surface. Through a hollow tube's open end the ray goes on within its bore.
   /// `direction`: Camera::direction_in_world.
   Hit first_hit(const Vec3& direction) const;
+  /// The first hits of up to kLanes rays, faster for rays side by side than one at a time.
+  void first_hits(std::span<const Vec3> directions, std::span<Hit> hits) const;
 
  private:
+  float search_end(const RayPacket& packet, int lane) const;
+  /// What Embree's search has left undecided.
+  Hit decide(const RayPacket& packet, int lane) const;
   /// As first_hit, looking at every boundary of every body.
   Hit first_boundary_hit(const Vec3& direction) const;
 

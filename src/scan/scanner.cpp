@@ -1,8 +1,11 @@
 #include "tubebin/scan/scanner.hpp"
 
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "scan/embree.hpp"
 #include "scan/measurement.hpp"
@@ -16,37 +19,53 @@ namespace {
 
 PixelWindow whole_image(const Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
 
-/// A pixel's point in world and its label; nothing where the pixel has none.
+/// A pixel's point in world and its label.
 struct LabelledPoint {
   Point point;
   Label label = 0;
 };
-using PointOfPixel = std::function<std::optional<LabelledPoint>(int column, int row)>;
+/// Fills points[i] for the pixel (column + i, row); nothing where the pixel has no point.
+using PointsOfRow = std::function<void(int column, int row, std::span<std::optional<LabelledPoint>> points)>;
 
-PointOfPixel exact_points(const RayCaster& caster, const Camera& camera) {
-  return [&](int column, int row) -> std::optional<LabelledPoint> {
-    const Vec3 direction = camera.pixel_direction_in_world(column, row);
-    const Hit hit = caster.first_hit(direction);
-    if (!hit.found()) return std::nullopt;
+PointsOfRow exact_points(const RayCaster& caster, const Camera& camera) {
+  return [&](int column, int row, std::span<std::optional<LabelledPoint>> points) {
     const Vec3 scanner_in_world = camera.world_from_scanner().translation();
-    return LabelledPoint{(scanner_in_world + hit.depth * direction).cast<float>(), hit.label};
+    std::array<Vec3, kLanes> directions;
+    std::array<Hit, kLanes> hits;
+    for (std::size_t begin = 0; begin < points.size(); begin += kLanes) {
+      const std::size_t count = std::min<std::size_t>(kLanes, points.size() - begin);
+      for (std::size_t i = 0; i < count; ++i)
+        directions[i] = camera.pixel_direction_in_world(column + static_cast<int>(begin + i), row);
+      caster.first_hits({directions.data(), count}, hits);
+      for (std::size_t i = 0; i < count; ++i) {
+        points[begin + i].reset();
+        if (hits[i].found())
+          points[begin + i] = {(scanner_in_world + hits[i].depth * directions[i]).cast<float>(), hits[i].label};
+      }
+    }
   };
 }
 
-PointOfPixel measured_points(const Measurement& measurement, const Reconstruction& reconstruction) {
-  return [&](int column, int row) -> std::optional<LabelledPoint> {
-    const std::optional<Hit> hit = measurement.measure(column, row);
-    if (!hit) return std::nullopt;
-    return LabelledPoint{reconstruction.point_in_world(column, row, hit->depth).cast<float>(), hit->label};
+PointsOfRow measured_points(const Measurement& measurement, const Reconstruction& reconstruction) {
+  return [&](int column, int row, std::span<std::optional<LabelledPoint>> points) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const int at = column + static_cast<int>(i);
+      const std::optional<Hit> hit = measurement.measure(at, row);
+      points[i].reset();
+      if (hit) points[i] = {reconstruction.point_in_world(at, row, hit->depth).cast<float>(), hit->label};
+    }
   };
 }
 
 /// Calls on_point(column, row, labelled point) for every pixel of the window that has one, row by row.
 template <typename OnPoint>
-void for_each_point(const PointOfPixel& point_of_pixel, const PixelWindow& window, const OnPoint& on_point) {
-  for (int row = window.y; row < window.y + window.height; ++row)
-    for (int column = window.x; column < window.x + window.width; ++column)
-      if (const auto point = point_of_pixel(column, row)) on_point(column, row, *point);
+void for_each_point(const PointsOfRow& points_of_row, const PixelWindow& window, const OnPoint& on_point) {
+  std::vector<std::optional<LabelledPoint>> points(static_cast<std::size_t>(window.width));
+  for (int row = window.y; row < window.y + window.height; ++row) {
+    points_of_row(window.x, row, points);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (points[i]) on_point(window.x + static_cast<int>(i), row, *points[i]);
+  }
 }
 
 void resize_empty(Cloud& cloud, const PixelWindow& window) {
@@ -59,10 +78,10 @@ void resize_empty(Cloud& cloud, const PixelWindow& window) {
 }
 
 /// One point a pixel of `scan.window`; what lies outside `seen` shows neither bin nor tubes.
-void scan_organized(const PointOfPixel& point_of_pixel, const PixelWindow& seen, const std::vector<Color>& colors,
+void scan_organized(const PointsOfRow& points_of_row, const PixelWindow& seen, const std::vector<Color>& colors,
                     Scan& scan) {
   resize_empty(scan.cloud, scan.window);
-  for_each_point(point_of_pixel, seen, [&](int column, int row, const LabelledPoint& seen_point) {
+  for_each_point(points_of_row, seen, [&](int column, int row, const LabelledPoint& seen_point) {
     const auto index = static_cast<std::size_t>(row - scan.window.y) * scan.cloud.width +
                        static_cast<std::size_t>(column - scan.window.x);
     const Label label = seen_point.label;
@@ -73,8 +92,8 @@ void scan_organized(const PointOfPixel& point_of_pixel, const PixelWindow& seen,
   });
 }
 
-void scan_tubes(const PointOfPixel& point_of_pixel, const std::vector<Color>& colors, Scan& scan) {
-  for_each_point(point_of_pixel, scan.window, [&](int, int, const LabelledPoint& seen_point) {
+void scan_tubes(const PointsOfRow& points_of_row, const std::vector<Color>& colors, Scan& scan) {
+  for_each_point(points_of_row, scan.window, [&](int, int, const LabelledPoint& seen_point) {
     const Label label = seen_point.label;
     if (label == 0) return;
     scan.cloud.points.push_back(seen_point.point);
@@ -85,10 +104,10 @@ void scan_tubes(const PointOfPixel& point_of_pixel, const std::vector<Color>& co
   scan.cloud.width = static_cast<std::uint32_t>(scan.cloud.size());
 }
 
-void scan_region(const PointOfPixel& point_of_pixel, const PixelWindow& seen, ScanRegion region, Scan& scan) {
+void scan_region(const PointsOfRow& points_of_row, const PixelWindow& seen, ScanRegion region, Scan& scan) {
   const std::vector<Color> colors = label_colors(scan.tube_pixels.size());
-  if (region == ScanRegion::tubes) scan_tubes(point_of_pixel, colors, scan);
-  else scan_organized(point_of_pixel, seen, colors, scan);
+  if (region == ScanRegion::tubes) scan_tubes(points_of_row, colors, scan);
+  else scan_organized(points_of_row, seen, colors, scan);
 }
 
 }  // namespace

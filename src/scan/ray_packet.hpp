@@ -1,0 +1,68 @@
+// Several rays from the scanner at once, and the first solid that each of them has met so far.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "scan/exact_shapes.hpp"
+#include "scan/scene_solids.hpp"
+
+namespace tubebin {
+
+/// The rays of a packet, which are as many as of Embree's, are reckoned in blocks that fill a register of AVX2 each:
+/// GCC takes vectors that are longer than a register apart, one number at a time.
+constexpr int kLanes = 8;
+constexpr int kBlockLanes = 4;
+using Lanes = double __attribute__((vector_size(kBlockLanes * sizeof(double))));
+using LaneFlags = std::int64_t __attribute__((vector_size(kBlockLanes * sizeof(double))));  ///< all bits or none
+
+struct Hit {
+  double depth = std::numeric_limits<double>::infinity();  ///< along the optical axis, metres; infinity: nothing
+  Label label = 0;
+
+  bool found() const { return depth < std::numeric_limits<double>::infinity(); }
+};
+
+class RayPacket {
+ public:
+  /// At most kLanes directions; the last fills the lanes that are left. Depths below depth_min don't count.
+  RayPacket(std::span<const Vec3> directions, double depth_min);
+
+  /// Each lane takes the solid's first point if it is nearer than what it has. Equal depths go to the lower label, so
+  /// that the result does not depend on the order of the solids.
+  void offer_bin(const std::vector<Box>& bin);
+  void offer(const Labelled<SolidCylinder>& cylinder);
+  void offer(const Labelled<SolidSphere>& sphere);
+
+  Vec3 direction(int lane) const;
+  double depth(int lane) const { return block(lane).depth[lane % kBlockLanes]; }
+  Hit first(int lane) const { return {depth(lane), static_cast<Label>(block(lane).label[lane % kBlockLanes])}; }
+  /// Whether the first boundary is to be looked for otherwise: the ray begins inside a solid, or enters a hollow tube
+  /// through its open end.
+  bool is_special(int lane) const {
+    return (block(lane).begins_inside[lane % kBlockLanes] | block(lane).enters_bore[lane % kBlockLanes]) != 0;
+  }
+
+ private:
+  struct Block {
+    DirectionOf<Lanes> directions;
+    Lanes depth;
+    LaneFlags label = {};
+    LaneFlags begins_inside = {};
+    LaneFlags enters_bore = {};  ///< at `depth`
+
+    void take(const IntervalOf<Lanes>& inside, Label label_inside, double depth_min);
+  };
+
+  const Block& block(int lane) const { return blocks_[static_cast<std::size_t>(lane / kBlockLanes)]; }
+  template <typename Solid>
+  void offer_solid(const Labelled<Solid>& solid);
+  template <typename Solid>
+  void check_bore(const Labelled<Solid>& solid);
+
+  std::array<Block, kLanes / kBlockLanes> blocks_;
+  double depth_min_;
+};
+
+}  // namespace tubebin
