@@ -7,10 +7,10 @@ void describe(Fields& fields, PhysicsOptions& o) {
   fields.number("time_step", o.time_step, {1e-5, 0.05}, "s", "of the simulation; smaller is slower and more exact");
   fields.integer(
       "solver_iterations", o.solver_iterations, {1, 10000}, "",
-      "of ODE's quickstep; half as many more for each check that nothing moves, whose creep is the solver's residual");
+      "of ODE's quickstep; half as many more once all is slow, since what creeps then is mostly its residual");
   fields.number("solver_over_relaxation", o.solver_over_relaxation, {0.1, 1.9}, "", "quickstep's SOR factor");
   fields.number("solver_patience", o.solver_patience, {0.0, 10000.0}, "s",
-                "a pile that is not at rest after this time is iterated half as much again every quarter of a second");
+                "a pile that is not slow after this time is iterated half as much again every half second");
   fields.number("warm_start", o.warm_start, {0.0, 0.95}, "",
                 "share of a resting contact's force that the next step starts from; 0 starts from none");
   fields.number("warm_start_speed", o.warm_start_speed, {0.0, 10.0}, "m/s",

@@ -43,12 +43,4 @@ std::optional<std::size_t> find_floating(const std::vector<Contact>& contacts, s
   return static_cast<std::size_t>(floating - held.begin()) - 1;
 }
 
-double largest_movement(const std::vector<PlacedTube>& before, const std::vector<PlacedTube>& after) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < before.size(); ++i)
-    for (int node = 0; node < static_cast<int>(before[i].tube.nodes.size()); ++node)
-      largest = std::max(largest, (after[i].node_in_world(node) - before[i].node_in_world(node)).norm());
-  return largest;
-}
-
 }  // namespace tubebin

@@ -20,7 +20,4 @@ double deepest_penetration(const std::vector<Contact>& contacts);
 /// The first tube from which no chain of contacts leads to the bin.
 std::optional<std::size_t> find_floating(const std::vector<Contact>& contacts, std::size_t tube_count);
 
-/// Farthest that any node moved between two moments of the same tubes, metres.
-double largest_movement(const std::vector<PlacedTube>& before, const std::vector<PlacedTube>& after);
-
 }  // namespace tubebin

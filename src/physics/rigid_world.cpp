@@ -33,6 +33,10 @@ dMass to_ode(const MassProperties& properties) {
 
 }  // namespace
 
+int steps_in(double seconds, const PhysicsOptions& options) {
+  return static_cast<int>(std::ceil(seconds / options.time_step));
+}
+
 struct RigidWorld::Impl {
   dWorldID world = nullptr;
   dJointGroupID joints = nullptr;

@@ -9,6 +9,9 @@
 
 namespace tubebin {
 
+/// Steps of options.time_step that take at least as long as `seconds`.
+int steps_in(double seconds, const PhysicsOptions& options);
+
 class RigidWorld {
  public:
   RigidWorld(const std::vector<PlacedTube>& tubes, const Bin& bin, const PhysicsOptions& options, std::uint64_t seed);

@@ -14,9 +14,9 @@ namespace tubebin {
 struct PhysicsOptions {
   double gravity = 9.81;                ///< m/s^2
   double time_step = 0.005;             ///< seconds
-  int solver_iterations = 12;           ///< of ODE's quickstep; half as many more for each check at the end
+  int solver_iterations = 12;           ///< of ODE's quickstep; half as many more once all is slow
   double solver_over_relaxation = 1.6;  ///< SOR factor of quickstep
-  double solver_patience = 1.5;         ///< seconds; what takes longer to come to rest is iterated more and more
+  double solver_patience = 4.0;         ///< seconds; what takes longer to come to rest is iterated more and more
   double warm_start = 0.8;              ///< share of a resting contact's force that the next step starts from
   double warm_start_speed = 0.05;       ///< m/s; bodies that move faster against each other are not at rest
   double contact_erp = 0.2;             ///< share of an interpenetration that one step corrects
