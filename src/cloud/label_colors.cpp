@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 #include "tubebin/core/error.hpp"
 
@@ -53,29 +54,42 @@ std::vector<Candidate> candidates() {
   return all;
 }
 
-}  // namespace
-
 /// Farthest-first traversal (Gonzalez 1985): each colour is the candidate farthest from all before it, so
 /// that the first colours are the most different ones and label k has the same colour in every scene.
-std::vector<Color> label_colors(std::size_t tube_count) {
-  static const std::vector<Candidate> all = candidates();
-  std::vector<Candidate> free = all;
-  if (tube_count >= free.size())
-    throw_config_error("{} tubes are more than there are colours to tell them apart; valid: below {}", tube_count,
-                       free.size());
-  std::vector<Color> colors = {kBinColor};
-  colors.reserve(tube_count + 1);
-  Vec3 chosen = oklab(kBinColor);
-  while (colors.size() <= tube_count) {
-    Candidate* farthest = &free.front();
-    for (Candidate& candidate : free) {
-      candidate.distance = std::min(candidate.distance, (candidate.lab - chosen).squaredNorm());
+class ColorSequence {
+ public:
+  /// The bin's colour and those of the first tubes.
+  std::vector<Color> first(std::size_t tube_count) {
+    if (tube_count >= free_.size())
+      throw_config_error("{} tubes are more than there are colours to tell them apart; valid: below {}", tube_count,
+                         free_.size());
+    while (colors_.size() <= tube_count) append_farthest();
+    return {colors_.begin(), colors_.begin() + static_cast<std::ptrdiff_t>(tube_count) + 1};
+  }
+
+ private:
+  void append_farthest() {
+    const Candidate* farthest = &free_.front();
+    for (Candidate& candidate : free_) {
+      candidate.distance = std::min(candidate.distance, (candidate.lab - last_).squaredNorm());
       if (candidate.distance > farthest->distance) farthest = &candidate;
     }
-    colors.push_back(farthest->color);
-    chosen = farthest->lab;
+    colors_.push_back(farthest->color);
+    last_ = farthest->lab;
   }
-  return colors;
+
+  std::vector<Candidate> free_ = candidates();
+  std::vector<Color> colors_ = {kBinColor};
+  Vec3 last_ = oklab(kBinColor);
+};
+
+}  // namespace
+
+std::vector<Color> label_colors(std::size_t tube_count) {
+  static std::mutex mutex;
+  static ColorSequence sequence;
+  const std::lock_guard lock(mutex);
+  return sequence.first(tube_count);
 }
 
 }  // namespace tubebin

@@ -20,7 +20,7 @@ bool same_point(const Point& a, const Point& b) {
   return true;
 }
 
-/// Compressed files have been written before that nothing could read.
+/// Compressors have written files before that nothing could read.
 void check_reads_back(const std::string& bytes, const Cloud& cloud, const std::string& path) {
   const Cloud read = parse_cloud(bytes, path);
   if (read.points.empty() && cloud.points.empty()) return;  // files have no unique form of no points
@@ -45,9 +45,11 @@ std::function<std::map<std::string, FileRecord>()> SceneStore::begin_write(const
   files["tubes.txt"] = format_tubes_txt(content.record.scene.tubes);
 
   const std::function<void()> finish = begin_whole_folder(path(scene_name), files);
-  check_reads_back(files[cloud_name()], content.cloud, path(scene_name) + "/" + cloud_name());
-  if (content.clean_cloud)
-    check_reads_back(files[clean_cloud_name()], *content.clean_cloud, path(scene_name) + "/" + clean_cloud_name());
+  if (options_.format == CloudFormat::pcd_compressed) {
+    check_reads_back(files[cloud_name()], content.cloud, path(scene_name) + "/" + cloud_name());
+    if (content.clean_cloud)
+      check_reads_back(files[clean_cloud_name()], *content.clean_cloud, path(scene_name) + "/" + clean_cloud_name());
+  }
   std::map<std::string, FileRecord> records;
   for (const auto& [name, bytes] : files) records[name] = record_bytes(bytes);
   return [finish, records] {

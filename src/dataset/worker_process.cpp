@@ -1,5 +1,6 @@
 #include "worker_process.hpp"
 
+#include <malloc.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -35,6 +36,14 @@ void send_answer(int socket, WorkerAnswer::Kind kind, std::string text) {
 }
 
 /// Attempts one by one; the end of each that succeeded beside the next one.
+/// Clouds of megabytes come and go with every job. glibc would give their pages back each time, and clearing new ones
+/// costs as much as filling them.
+void keep_memory() {
+  constexpr int kLargestThreshold = 32 << 20;  // bytes; glibc takes no larger one
+  mallopt(M_MMAP_THRESHOLD, kLargestThreshold);
+  mallopt(M_TRIM_THRESHOLD, 8 * kLargestThreshold);
+}
+
 class Server {
  public:
   Server(int socket, const Work& work) : socket_(socket), work_(work) {}
@@ -108,6 +117,7 @@ WorkerProcess::WorkerProcess(const Work& work, const std::vector<int>& others) {
   set_signals_of_worker();
   close(ends[0]);
   for (const int other : others) close(other);
+  keep_memory();
   Server(ends[1], work).serve();
 }
 
