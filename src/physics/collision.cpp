@@ -111,6 +111,7 @@ void add_line_touches(const Piece& first, const Piece& second, double depth_min,
 void keep_deepest_of_each_spot(std::size_t begin, double spot, std::vector<Touch>& touches) {
   constexpr double kSameDirection = 0.9;  // cosine
   const auto at = [&](std::size_t i) { return touches.begin() + static_cast<std::ptrdiff_t>(i); };
+  if (touches.size() - begin < 2) return;
   std::stable_sort(at(begin), touches.end(), [](const Touch& a, const Touch& b) { return a.depth > b.depth; });
   std::size_t kept = begin;
   for (std::size_t i = begin; i < touches.size(); ++i) {
@@ -200,23 +201,36 @@ Box inflated(const Box& box, double margin) {
 
 }  // namespace
 
+void find_near_pieces(const CollisionTube& first, const CollisionTube& second, double reach,
+                      std::vector<PiecePair>& out) {
+  const Box reached = inflated(second.bounds, reach);
+  if (!first.bounds.intersects(reached)) return;
+  for (std::uint32_t i = 0; i < first.pieces.size(); ++i) {
+    if (!first.pieces[i].bounds.intersects(reached)) continue;
+    const Box piece_reach = inflated(first.pieces[i].bounds, reach);
+    for (std::uint32_t j = 0; j < second.pieces.size(); ++j)
+      if (piece_reach.intersects(second.pieces[j].bounds)) out.push_back({i, j});
+  }
+}
+
 void collide(const CollisionTube& first, const CollisionTube& second, double depth_min, std::vector<Touch>& out) {
-  const double margin = -std::min(depth_min, 0.0);
-  const Box reach = inflated(second.bounds, margin);
-  if (!first.bounds.intersects(reach)) return;
+  std::vector<PiecePair> pairs;
+  find_near_pieces(first, second, -std::min(depth_min, 0.0), pairs);
+  collide(first, second, pairs, depth_min, out);
+}
+
+void collide(const CollisionTube& first, const CollisionTube& second, const std::vector<PiecePair>& pairs,
+             double depth_min, std::vector<Touch>& out) {
   const std::size_t begin = out.size();
-  const double touching = first.radius + second.radius + margin;
-  for (const Piece& p : first.pieces) {
-    if (!p.bounds.intersects(reach)) continue;
-    const Box piece_reach = inflated(p.bounds, margin);
-    for (const Piece& q : second.pieces) {
-      if (!piece_reach.intersects(q.bounds)) continue;
-      const SegmentPair closest = closest_on_segments(p.axis, q.axis);
-      if ((p.axis.at(closest.s) - q.axis.at(closest.t)).squaredNorm() > touching * touching) continue;
-      if (const auto touch = touch_pieces(p, q, closest, depth_min)) out.push_back(*touch);
-      if (p.direction.cross(q.direction).squaredNorm() < kParallelSine * kParallelSine)
-        add_line_touches(p, q, depth_min, out);
-    }
+  const double touching = first.radius + second.radius - std::min(depth_min, 0.0);
+  for (const PiecePair& pair : pairs) {
+    const Piece& p = first.pieces[pair.first];
+    const Piece& q = second.pieces[pair.second];
+    const SegmentPair closest = closest_on_segments(p.axis, q.axis);
+    if ((p.axis.at(closest.s) - q.axis.at(closest.t)).squaredNorm() > touching * touching) continue;
+    if (const auto touch = touch_pieces(p, q, closest, depth_min)) out.push_back(*touch);
+    if (p.direction.cross(q.direction).squaredNorm() < kParallelSine * kParallelSine)
+      add_line_touches(p, q, depth_min, out);
   }
   keep_deepest_of_each_spot(begin, 0.5 * std::min(first.radius, second.radius), out);
 }

@@ -5,6 +5,7 @@
 /// flat end's face a bin edge, their rims are rounded by kRimRounding.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "physics/convex.hpp"
@@ -50,8 +51,21 @@ void update_collision_tube(const PlacedTube& tube, const std::vector<int>& node_
 /// The bin as it collides: bin_boxes() with the ground below the floor, so that nothing falls through.
 std::vector<Box> collision_boxes(const Bin& bin);
 
+/// Indices of a piece of one tube and of a piece of another.
+struct PiecePair {
+  std::uint32_t first = 0;
+  std::uint32_t second = 0;
+};
+
+/// Appends the pairs of pieces whose bounds come within `reach` (metres).
+void find_near_pieces(const CollisionTube& first, const CollisionTube& second, double reach,
+                      std::vector<PiecePair>& out);
+
 /// Appends the touches of two tubes with depth >= `depth_min` (metres; negative to find gaps too).
 void collide(const CollisionTube& first, const CollisionTube& second, double depth_min, std::vector<Touch>& out);
+/// As above, looking at these pairs of pieces alone.
+void collide(const CollisionTube& first, const CollisionTube& second, const std::vector<PiecePair>& pairs,
+             double depth_min, std::vector<Touch>& out);
 
 /// Appends the touches of the bin (first) and a tube (second) with depth >= `depth_min`.
 void collide(const std::vector<Box>& bin, const CollisionTube& tube, double depth_min, std::vector<Touch>& out);

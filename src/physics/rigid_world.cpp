@@ -7,6 +7,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "physics/near_pieces.hpp"
 #include "physics/warm_start.hpp"
 
 namespace tubebin {
@@ -47,6 +48,7 @@ struct RigidWorld::Impl {
   std::vector<Vec3> centers;  ///< of mass, tube frame
   std::vector<std::vector<int>> degrees;
   std::vector<CollisionTube> shapes;
+  NearPieces near_pieces;
   std::vector<Touch> touches;
   std::vector<StepContact> contacts;  ///< of the last step
 
@@ -78,11 +80,12 @@ struct RigidWorld::Impl {
       for (const Touch& touch : touches) contacts.push_back({.first = first, .second = second, .touch = touch});
       touches.clear();
     };
+    near_pieces.follow(shapes);
     for (std::size_t j = 0; j < shapes.size(); ++j) {
       collide(bin, shapes[j], 0.0, touches);
       append(kBinBody, j);
       for (std::size_t i = 0; i < j; ++i) {
-        collide(shapes[i], shapes[j], 0.0, touches);
+        collide(shapes[i], shapes[j], near_pieces.pairs(i, j), 0.0, touches);
         append(i, j);
       }
     }

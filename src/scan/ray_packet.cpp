@@ -67,8 +67,8 @@ void RayPacket::check_bore(const Labelled<Solid>& solid) {
     const Hit hit = first(lane);
     const Interval whole = solid.solid.intersect(direction(lane));
     if (hit.label != solid.label || whole.empty() || hit.depth != whole.begin) continue;
-    if (solid.solid.intersect(direction(lane), solid.bore_radius).begin == whole.begin)
-      block.enters_bore[lane % kBlockLanes] = -1;
+    const Interval bore = solid.solid.intersect(direction(lane), solid.bore_radius);
+    if (!bore.empty() && bore.begin == whole.begin) block.enters_bore[lane % kBlockLanes] = -1;
   }
 }
 

@@ -1,0 +1,51 @@
+#include "physics/near_pieces.hpp"
+
+#include <algorithm>
+
+namespace tubebin {
+namespace {
+
+/// A tube whose nodes are farther than this from where they were listed is listed anew (metres).
+constexpr double kMovementMax = 0.002;
+
+/// Of two tubes the one listed anew moves by kMovementMax at most until the next time. The other may be as far from its
+/// own listing on one side now and on the other side then.
+constexpr double kReach = 3.0 * kMovementMax;
+
+std::vector<Segment> axes_of(const CollisionTube& tube) {
+  std::vector<Segment> axes;
+  for (const Piece& piece : tube.pieces) axes.push_back(piece.axis);
+  return axes;
+}
+
+}  // namespace
+
+bool NearPieces::has_moved(const CollisionTube& tube, const std::vector<Segment>& axes_when_listed) const {
+  const auto is_far = [](const Vec3& now, const Vec3& then) {
+    return (now - then).squaredNorm() > kMovementMax * kMovementMax;
+  };
+  for (std::size_t i = 0; i < tube.pieces.size(); ++i)
+    if (is_far(tube.pieces[i].axis.a, axes_when_listed[i].a) || is_far(tube.pieces[i].axis.b, axes_when_listed[i].b))
+      return true;
+  return false;
+}
+
+void NearPieces::follow(const std::vector<CollisionTube>& tubes) {
+  const bool is_new = axes_when_listed_.empty();
+  axes_when_listed_.resize(tubes.size());
+  pairs_.resize(tubes.size() * (tubes.size() - 1) / 2);
+  std::vector<bool> moved(tubes.size());
+  for (std::size_t i = 0; i < tubes.size(); ++i) {
+    moved[i] = is_new || has_moved(tubes[i], axes_when_listed_[i]);
+    if (moved[i]) axes_when_listed_[i] = axes_of(tubes[i]);
+  }
+  for (std::size_t second = 1; second < tubes.size(); ++second)
+    for (std::size_t first = 0; first < second; ++first) {
+      if (!moved[first] && !moved[second]) continue;
+      std::vector<PiecePair>& pairs = pairs_[second * (second - 1) / 2 + first];
+      pairs.clear();
+      find_near_pieces(tubes[first], tubes[second], kReach, pairs);
+    }
+}
+
+}  // namespace tubebin

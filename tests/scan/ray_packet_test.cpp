@@ -1,0 +1,75 @@
+#include "scan/ray_packet.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tubebin/core/random.hpp"
+
+namespace tubebin {
+namespace {
+
+/// One ray at a time, by the intervals of the solids.
+Hit first_by_intervals(const SceneSolids& solids, const Vec3& direction, double depth_min) {
+  Hit first;
+  const auto offer = [&](const Interval& inside, Label label) {
+    if (inside.empty() || inside.end < depth_min) return;
+    if (inside.begin < first.depth || (inside.begin == first.depth && label < first.label))
+      first = {inside.begin, label};
+  };
+  for (const Box& box : solids.bin) offer(intersect(box, inverse_direction(direction)), 0);
+  for (const auto& [solid, label, bore] : solids.cylinders) offer(solid.intersect(direction), label);
+  for (const auto& [solid, label, bore] : solids.spheres) offer(solid.intersect(direction), label);
+  return first;
+}
+
+Vec3 random_point(Random& random, double depth) {
+  return {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), depth + random.uniform(-0.5, 0.5)};
+}
+
+TEST(RayPacket, EveryLaneTakesWhatItsRayMeetsFirst) {
+  Random random(3);
+  SceneSolids solids;
+  solids.bin.push_back({Vec3(-1, -1, 2.5), Vec3(1, 1, 2.6)});
+  solids.bin.push_back({Vec3(-0.1, -0.1, 1.0), Vec3(0.1, 0.1, 1.2)});
+  for (Label label = 1; label <= 20; ++label) {
+    const Vec3 base = random_point(random, 1.5);
+    solids.cylinders.push_back({SolidCylinder(base, base + 0.3 * random_point(random, 0.0), 0.03), label});
+    solids.spheres.push_back({SolidSphere(base, 0.03), label});
+  }
+  int tube_hits = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    const auto count = static_cast<std::size_t>(1 + trial % kLanes);
+    std::vector<Vec3> directions;
+    for (std::size_t i = 0; i < count; ++i)
+      directions.emplace_back(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), 1.0);
+    if (trial % 5 == 0) directions.front() = Vec3(0, 0, 1);  // within the faces' planes of no box, along axes
+    RayPacket packet(directions, 0.1);
+    packet.offer_bin(solids.bin);
+    for (const auto& sphere : solids.spheres) packet.offer(sphere);
+    for (const auto& cylinder : solids.cylinders) packet.offer(cylinder);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Hit expected = first_by_intervals(solids, directions[i], 0.1);
+      const Hit hit = packet.first(static_cast<int>(i));
+      EXPECT_EQ(hit.depth, expected.depth);
+      EXPECT_EQ(hit.label, expected.label);
+      tube_hits += expected.label > 0;
+    }
+  }
+  EXPECT_GT(tube_hits, 1000);
+}
+
+TEST(RayPacket, MarksLanesThatBeginInsideOrEnterABore) {
+  const std::vector<Vec3> directions = {{0, 0, 1}, {0.3, 0, 1}, {0.012, 0, 1}};
+  RayPacket inside(directions, 0.1);
+  inside.offer(Labelled<SolidCylinder>{SolidCylinder({-0.05, 0, 0.1}, {0.05, 0, 0.1}, 0.05), 1});
+  EXPECT_TRUE(inside.is_special(0));
+  EXPECT_FALSE(inside.is_special(1));
+
+  RayPacket into_the_end(directions, 0.1);  // an upright tube of outer radius 15 mm and bore 10 mm, 1 m away
+  into_the_end.offer(Labelled<SolidCylinder>{SolidCylinder({0, 0, 1}, {0, 0, 1.5}, 0.015), 1, 0.010});
+  EXPECT_TRUE(into_the_end.is_special(0));
+  EXPECT_FALSE(into_the_end.is_special(2)) << "the ring of the wall";
+  EXPECT_DOUBLE_EQ(into_the_end.first(2).depth, 1.0);
+}
+
+}  // namespace
+}  // namespace tubebin
