@@ -58,7 +58,7 @@ TEST(RayPacket, EveryLaneTakesWhatItsRayMeetsFirst) {
 }
 
 TEST(RayPacket, MarksLanesThatBeginInsideOrEnterABore) {
-  const std::vector<Vec3> directions = {{0, 0, 1}, {0.3, 0, 1}, {0.012, 0, 1}};
+  const std::vector<Vec3> directions = {{0, 0, 1}, {0.6, 0, 1}, {0.012, 0, 1}};
   RayPacket inside(directions, 0.1);
   inside.offer(Labelled<SolidCylinder>{SolidCylinder({-0.05, 0, 0.1}, {0.05, 0, 0.1}, 0.05), 1});
   EXPECT_TRUE(inside.is_special(0));
