@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds with warnings as errors, and runs the tests.
 # Usage: scripts/test.sh [PRESET [KIND...]]
-#   PRESET  release, debug, asan or tsan; default: release
+#   PRESET  release, debug, ci, asan or tsan; default: release
 #   KIND    unit, scene, fault or browser: builds and runs these alone; default: all
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -23,7 +23,7 @@ struct Field {
 
 enum class Data { ascii, binary, compressed };
 
-struct Header {
+struct PcdHeader {
   std::vector<Field> fields;
   std::uint32_t width = 0;
   std::uint32_t height = 1;
@@ -41,11 +41,11 @@ struct Header {
 };
 
 /// Reads the lines up to DATA.
-class HeaderReader {
+class PcdHeaderReader {
  public:
-  HeaderReader(std::string_view bytes, const std::string& name) : bytes_(bytes), lines_(bytes), name_(name) {}
+  PcdHeaderReader(std::string_view bytes, const std::string& name) : bytes_(bytes), lines_(bytes), name_(name) {}
 
-  Header read() {
+  PcdHeader read() {
     while (!has_data_) {
       const std::optional<std::string_view> line = lines_.next();
       if (!line) throw_io_error("{}: truncated: the header has no DATA line", name_);
@@ -169,7 +169,7 @@ class HeaderReader {
   std::string_view bytes_;
   LineScanner lines_;
   const std::string& name_;
-  Header header_;
+  PcdHeader header_;
   bool has_width_ = false;
   bool has_height_ = false;
   bool has_points_ = false;
@@ -193,7 +193,7 @@ ScalarType scalar_type(const Field& field) {
 
 /// Calls f(role, field, bytes before the field, values before the field) for every field that a cloud keeps.
 template <typename Function>
-void for_each_role(const Header& header, const std::string& name, Function&& f) {
+void for_each_role(const PcdHeader& header, const std::string& name, Function&& f) {
   std::array<bool, kRoleCount> present{};
   std::size_t offset = 0;
   std::size_t position = 0;
@@ -212,12 +212,12 @@ void for_each_role(const Header& header, const std::string& name, Function&& f) 
   require_coordinates(present, name);
 }
 
-[[noreturn]] void fail_truncated(const Header& header, std::size_t available, const std::string& name) {
+[[noreturn]] void fail_truncated(const PcdHeader& header, std::size_t available, const std::string& name) {
   throw_io_error("{}: truncated: {} points of {} bytes are announced, but only {} bytes are there", name, header.points,
                  header.point_size(), available);
 }
 
-void decode_ascii(const Header& header, std::string_view data, const std::string& name, double scale, Cloud& cloud) {
+void decode_ascii(const PcdHeader& header, std::string_view data, const std::string& name, double scale, Cloud& cloud) {
   AsciiRows rows;
   for (const Field& field : header.fields) rows.values_per_row += field.count;
   for_each_role(header, name, [&](Role role, const Field& field, std::size_t, std::size_t position) {
@@ -230,7 +230,8 @@ void decode_ascii(const Header& header, std::string_view data, const std::string
   rows.columns(values).decode(header.points, scale, name, cloud);
 }
 
-void decode_binary(const Header& header, std::string_view data, const std::string& name, double scale, Cloud& cloud) {
+void decode_binary(const PcdHeader& header, std::string_view data, const std::string& name, double scale,
+                   Cloud& cloud) {
   const std::size_t stride = header.point_size();
   CloudColumns columns;
   for_each_role(header, name, [&](Role role, const Field& field, std::size_t offset, std::size_t) {
@@ -241,7 +242,7 @@ void decode_binary(const Header& header, std::string_view data, const std::strin
 }
 
 /// The fields one after the other, each with all its points' values.
-std::vector<char> decompress(const Header& header, std::string_view data, const std::string& name) {
+std::vector<char> decompress(const PcdHeader& header, std::string_view data, const std::string& name) {
   constexpr std::size_t kSizes = 2 * sizeof(std::uint32_t);
   // Three bytes of LZF stand for 264 at most (liblzf's format: runs of 2 to 264 bytes, in 2 or 3).
   constexpr std::size_t kLongestRun = 264;
@@ -266,7 +267,7 @@ std::vector<char> decompress(const Header& header, std::string_view data, const 
   return out;
 }
 
-void decode_compressed(const Header& header, std::string_view data, const std::string& name, double scale,
+void decode_compressed(const PcdHeader& header, std::string_view data, const std::string& name, double scale,
                        Cloud& cloud) {
   const std::vector<char> fields = decompress(header, data, name);
   CloudColumns columns;
@@ -289,7 +290,7 @@ bool looks_like_pcd(std::string_view bytes) {
 }
 
 Cloud parse_pcd(std::string_view bytes, const std::string& name, double scale) {
-  const Header header = HeaderReader(bytes, name).read();
+  const PcdHeader header = PcdHeaderReader(bytes, name).read();
   const std::string_view data = bytes.substr(header.data_offset);
   Cloud cloud;
   cloud.width = header.width;

@@ -40,7 +40,7 @@ struct Element {
 
 enum class Encoding { ascii, little_endian, big_endian };
 
-struct Header {
+struct PlyHeader {
   Encoding encoding = Encoding::ascii;
   std::vector<Element> elements;
   std::size_t lines = 0;
@@ -60,11 +60,11 @@ std::optional<ScalarType> to_scalar_type(std::string_view word) {
   return std::nullopt;
 }
 
-class HeaderReader {
+class PlyHeaderReader {
  public:
-  HeaderReader(std::string_view bytes, const std::string& name) : lines_(bytes), name_(name) {}
+  PlyHeaderReader(std::string_view bytes, const std::string& name) : lines_(bytes), name_(name) {}
 
-  Header read() {
+  PlyHeader read() {
     lines_.next();  // "ply"
     bool has_format = false;
     while (true) {
@@ -121,13 +121,13 @@ class HeaderReader {
 
   LineScanner lines_;
   const std::string& name_;
-  Header header_;
+  PlyHeader header_;
 };
 
 /// Walks over the elements' records, text or binary, never beyond the data.
 class Body {
  public:
-  Body(std::string_view data, const Header& header, const std::string& name)
+  Body(std::string_view data, const PlyHeader& header, const std::string& name)
       : data_(data), lines_(data, header.lines), encoding_(header.encoding), name_(name) {}
 
   void skip(const Element& element) {
@@ -262,7 +262,7 @@ void apply_camera(const std::map<std::string_view, double>& values, double scale
   cloud.height = static_cast<std::uint32_t>(height);
 }
 
-const Element* find(const Header& header, std::string_view name) {
+const Element* find(const PlyHeader& header, std::string_view name) {
   for (const Element& element : header.elements)
     if (element.name == name) return &element;
   return nullptr;
@@ -273,7 +273,7 @@ const Element* find(const Header& header, std::string_view name) {
 bool looks_like_ply(std::string_view bytes) { return bytes.starts_with("ply\n") || bytes.starts_with("ply\r\n"); }
 
 Cloud parse_ply(std::string_view bytes, const std::string& name, double scale) {
-  const Header header = HeaderReader(bytes, name).read();
+  const PlyHeader header = PlyHeaderReader(bytes, name).read();
   const Element* vertices = find(header, "vertex");
   const Element* camera = find(header, "camera");
   if (!vertices) throw_io_error("{}: the header names no vertex element", name);

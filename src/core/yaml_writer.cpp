@@ -8,7 +8,7 @@ namespace {
 /// Shortest decimal text that reads back to the same double.
 std::string shortest(double value) { return fmt::format("{}", value); }
 
-std::string quoted(const std::string& text) {
+std::string yaml_quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
@@ -42,7 +42,7 @@ class TextFields : public Fields {
     entry(key, value ? "true" : "false", "", "true, false", doc);
   }
   void text(const char* key, std::string& value, const char* doc) override {
-    entry(key, quoted(value), "", "text", doc);
+    entry(key, yaml_quoted(value), "", "text", doc);
   }
   void vector(const char* key, Vec3& value, Limits limits, const char* unit, const char* doc) override {
     entry(key, fmt::format("[{}, {}, {}]", shortest(value.x()), shortest(value.y()), shortest(value.z())), unit,

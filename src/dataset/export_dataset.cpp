@@ -114,7 +114,7 @@ std::vector<Source> continue_index(const std::string& path, const std::vector<In
 }
 
 /// A folder with other things in it was hardly meant.
-void refuse_if_foreign(const std::string& output) {
+void refuse_if_no_export(const std::string& output) {
   if (!fs::exists(output) || fs::exists(output + "/index.json")) return;
   for (const fs::directory_entry& entry : fs::directory_iterator(output))
     if (const std::string name = entry.path().filename(); !name.starts_with('.') && !name.starts_with("index.json."))
@@ -196,7 +196,7 @@ ExportReport export_dataset(const ExportOptions& options, Progress::Style progre
   const auto known = formats().find(options.format);
   if (known == formats().end())
     throw_config_error("--format {}: unknown; one of {}", options.format, fmt::join(export_format_names(), ", "));
-  refuse_if_foreign(options.output);
+  refuse_if_no_export(options.output);
   const DatasetFiles dataset(options.dataset);
   if (!fs::exists(options.output)) list_sources(dataset);  // leaves no folder where there is nothing to export
   fs::create_directories(options.output);

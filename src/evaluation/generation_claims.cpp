@@ -6,9 +6,6 @@
 namespace tubebin {
 namespace {
 
-constexpr std::uint64_t kSeed = 1;
-constexpr double kMonotone = 0.9;  // as for modelling times
-
 const std::vector<double>* find(const GenerationSeconds& seconds, const std::string& set, int tubes) {
   const auto of_set = seconds.find(set);
   if (of_set == seconds.end() || !of_set->second.contains(tubes)) return nullptr;
@@ -62,7 +59,7 @@ Claim b_takes_less(const GenerationSeconds& seconds) {
         }
         return b / a - 1.0;
       },
-      kSeed);
+      kBootstrapSeed);
   claim.here =
       fmt::format("{:+.1f} % [{:+.1f}, {:+.1f}]", 100.0 * change.mean, 100.0 * change.low, 100.0 * change.high);
   claim.verdict = change.high < 0.0 ? Verdict::confirmed : Verdict::not_confirmed;

@@ -10,13 +10,10 @@
 namespace tubebin {
 namespace {
 
-constexpr std::uint64_t kSeed = 1;
 constexpr double kFigure8Ratio = 0.3;
 constexpr int kFigure9Tubes = 10;
 /// Linear means that a line explains so much of the variance of the means.
 constexpr double kLinear = 0.8;
-/// Rising with something means that the rank correlation with it is at least this.
-constexpr double kMonotone = 0.9;
 /// Flat means at most this share of the whole rise.
 constexpr double kFlat = 0.1;
 
@@ -88,7 +85,7 @@ void add_text(std::string& text, const std::string& more) { text += (text.empty(
 Interval relative_change(const Values& values, const std::string& set, double ratio, int from, int to) {
   return bootstrap_of_means(
       {values.at(set, ratio, from), values.at(set, ratio, to)},
-      [](std::span<const double> means) { return means[1] / means[0] - 1.0; }, kSeed);
+      [](std::span<const double> means) { return means[1] / means[0] - 1.0; }, kBootstrapSeed);
 }
 
 Claim falls_linearly(const Values& recall) {
@@ -109,7 +106,7 @@ Claim falls_linearly(const Values& recall) {
     if (x.size() < 3) continue;
     measured = true;
     const Interval slope = bootstrap_of_means(
-        groups, [&](std::span<const double> m) { return fit_line(x, m).slope; }, kSeed);
+        groups, [&](std::span<const double> m) { return fit_line(x, m).slope; }, kBootstrapSeed);
     const double r_squared = fit_line(x, means).r_squared;
     holds = holds && slope.high < 0.0 && r_squared >= kLinear;
     add_text(claim.here, fmt::format("{}: {} a tube, R² {:.2f}", set, signed_interval(slope, 5), r_squared));
@@ -143,7 +140,7 @@ Claim a_above_b(const Values& recall) {
         for (std::size_t i = 0; i < means.size(); i += 2) sum += means[i] - means[i + 1];
         return 2.0 * sum / static_cast<double>(means.size());
       },
-      kSeed);
+      kBootstrapSeed);
   const std::size_t counts = groups.size() / 2;
   claim.here = fmt::format("A above B at {} of {} numbers of tubes; A - B on average {}; least with {}: {:+.4f}", above,
                            counts, signed_interval(difference, 4), count_of_tubes(worst_tubes), worst);
@@ -189,7 +186,7 @@ Claim rises_with_ratio(const Values& recall) {
     const std::vector<double> all = recall.rises(set, kFigure9Tubes, 0.1, 1.0);
     if (low.empty() || all.empty()) continue;
     measured = true;
-    const Interval rise = bootstrap_mean(all, kSeed);
+    const Interval rise = bootstrap_mean(all, kBootstrapSeed);
     const double steep = mean(low) / 2.0;  // for each tenth of ratio
     const double rest = (mean(all) - mean(low)) / 7.0;
     holds = holds && rise.low > 0.0 && steep > rest;
@@ -209,7 +206,7 @@ Claim flat_above(const Values& recall, const std::string& set, double ratio) {
   const std::vector<double> beyond = recall.rises(set, kFigure9Tubes, ratio, 1.0);
   const std::vector<double> all = recall.rises(set, kFigure9Tubes, 0.1, 1.0);
   if (beyond.empty() || all.empty()) return claim;
-  const Interval rise = bootstrap_mean(beyond, kSeed);
+  const Interval rise = bootstrap_mean(beyond, kBootstrapSeed);
   claim.here = fmt::format("{} from {} to 1, of {:+.4f} from 0.1 to 1", signed_interval(rise, 5), ratio, mean(all));
   claim.verdict = verdict(rise.low <= 0.0 || rise.mean <= kFlat * mean(all));
   return claim;

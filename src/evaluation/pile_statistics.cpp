@@ -13,7 +13,7 @@ namespace tubebin {
 namespace {
 
 /// A cylinder's axis, and whether its ends are free: joined to no other cylinder.
-struct Axis {
+struct TubeAxis {
   Vec3 start;
   Vec3 end;
   bool start_is_free = false;
@@ -23,9 +23,9 @@ struct Axis {
   double length() const { return (end - start).norm(); }
 };
 
-std::vector<Axis> axes_of(const PlacedTube& placed) {
+std::vector<TubeAxis> axes_of(const PlacedTube& placed) {
   const std::vector<int> degrees = placed.tube.node_degrees();
-  std::vector<Axis> axes;
+  std::vector<TubeAxis> axes;
   for (const Cylinder& c : placed.tube.cylinders)
     axes.push_back({placed.node_in_world(c.node_a), placed.node_in_world(c.node_b),
                     degrees[static_cast<std::size_t>(c.node_a)] < 2, degrees[static_cast<std::size_t>(c.node_b)] < 2});
@@ -33,7 +33,7 @@ std::vector<Axis> axes_of(const PlacedTube& placed) {
 }
 
 /// Distance of two axes; nothing where a free end is among the closest points (Ericson 2005, Section 5.1.9).
-std::optional<double> axis_distance(const Axis& a, const Axis& b) {
+std::optional<double> axis_distance(const TubeAxis& a, const TubeAxis& b) {
   const Vec3 d = a.end - a.start;
   const Vec3 e = b.end - b.start;
   const Vec3 r = a.start - b.start;
@@ -51,17 +51,17 @@ std::optional<double> axis_distance(const Axis& a, const Axis& b) {
 }
 
 /// Gap between the surfaces of two tubes, negative where they are in each other.
-std::optional<double> gap(const std::vector<Axis>& a, const std::vector<Axis>& b, double radii) {
+std::optional<double> gap(const std::vector<TubeAxis>& a, const std::vector<TubeAxis>& b, double radii) {
   std::optional<double> smallest;
-  for (const Axis& first : a)
-    for (const Axis& second : b)
+  for (const TubeAxis& first : a)
+    for (const TubeAxis& second : b)
       if (const auto distance = axis_distance(first, second); distance && (!smallest || *distance - radii < *smallest))
         smallest = *distance - radii;
   return smallest;
 }
 
 /// Height of a cylinder's lowest point: of a joint's sphere, or of the rim of a free end.
-double lowest_point(const Axis& axis, double radius) {
+double lowest_point(const TubeAxis& axis, double radius) {
   const double rim = radius * std::hypot(axis.direction().x(), axis.direction().y());
   return std::min(axis.start.z() - (axis.start_is_free ? rim : radius),
                   axis.end.z() - (axis.end_is_free ? rim : radius));
@@ -83,7 +83,7 @@ void add_heights_and_spread(const std::vector<CenterlineSamples>& samples, PileS
     statistics.visible_share += tube.visible_fraction() / static_cast<double>(samples.size());
 }
 
-void add_contacts(const std::vector<std::vector<Axis>>& axes, const Scene& scene, PileStatistics& statistics) {
+void add_contacts(const std::vector<std::vector<TubeAxis>>& axes, const Scene& scene, PileStatistics& statistics) {
   int touching = 0;
   for (std::size_t i = 0; i < axes.size(); ++i)
     for (std::size_t j = i + 1; j < axes.size(); ++j) {
@@ -95,12 +95,12 @@ void add_contacts(const std::vector<std::vector<Axis>>& axes, const Scene& scene
   statistics.contacts = 2.0 * touching / static_cast<double>(axes.size());
 }
 
-void add_cylinders(const std::vector<std::vector<Axis>>& axes, const Scene& scene, PileStatistics& statistics) {
+void add_cylinders(const std::vector<std::vector<TubeAxis>>& axes, const Scene& scene, PileStatistics& statistics) {
   double tilt = 0.0;
   double length = 0.0;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const double radius = scene.tubes[i].tube.radius;
-    for (const Axis& axis : axes[i]) {
+    for (const TubeAxis& axis : axes[i]) {
       tilt += axis.length() * std::asin(std::min(1.0, std::abs(axis.direction().z())));
       length += axis.length();
       statistics.top_height = std::max({statistics.top_height, axis.start.z() + radius, axis.end.z() + radius});
@@ -143,7 +143,7 @@ double quantile(const std::vector<double>& sorted, double share) {
 PileStatistics pile_statistics(const Scene& scene, const std::vector<std::size_t>& tube_pixels) {
   PileStatistics statistics;
   if (scene.tubes.empty()) return statistics;
-  std::vector<std::vector<Axis>> axes;
+  std::vector<std::vector<TubeAxis>> axes;
   for (const PlacedTube& tube : scene.tubes) axes.push_back(axes_of(tube));
   add_heights_and_spread(sample_centerlines(scene), statistics);
   add_cylinders(axes, scene, statistics);

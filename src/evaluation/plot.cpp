@@ -54,7 +54,7 @@ struct Range {
 };
 
 /// From data to SVG coordinates.
-struct Axis {
+struct PlotAxis {
   double low = 0.0;
   double high = 1.0;
   double start = 0.0;  ///< SVG coordinate of low
@@ -87,7 +87,7 @@ std::vector<double> x_ticks(const Plot& plot, Range range) {
   return linear_ticks(range.low, range.high);
 }
 
-Axis x_axis(const Plot& plot) {
+PlotAxis x_axis(const Plot& plot) {
   Range range;
   for (const PlotSeries& series : plot.series)
     for (const PlotPoint& point : series.points) range.include(point.x);
@@ -95,14 +95,14 @@ Axis x_axis(const Plot& plot) {
   return {range.low - margin, range.high + margin, kLeft, kWidth - kRight, false, x_ticks(plot, range)};
 }
 
-Axis y_axis(const Plot& plot) {
+PlotAxis y_axis(const Plot& plot) {
   Range range;
   for (const PlotSeries& series : plot.series)
     for (const PlotPoint& point : series.points) {
       range.include(plot.log_y ? std::max(point.low, 1e-9) : point.low);
       range.include(point.high);
     }
-  Axis axis{range.low, range.high, kTop + kPlotHeight, kTop, plot.log_y, {}};
+  PlotAxis axis{range.low, range.high, kTop + kPlotHeight, kTop, plot.log_y, {}};
   if (plot.log_y) {
     axis.low = range.low / 1.15;
     axis.high = range.high * 1.15;
@@ -171,7 +171,7 @@ std::string line(double x1, double y1, double x2, double y2, const std::string& 
 /// A tick's number without the rounding of its computation.
 std::string tick_label(double value) { return fmt::format("{}", std::round(value * 1e6) / 1e6); }
 
-std::string axes_svg(const Plot& plot, const Axis& x, const Axis& y) {
+std::string axes_svg(const Plot& plot, const PlotAxis& x, const PlotAxis& y) {
   std::string svg;
   for (const double tick : y.ticks) {
     svg += line(x.start, y.place(tick), x.end, y.place(tick), "stroke=\"#d9d9d9\"");
@@ -191,7 +191,7 @@ std::string axes_svg(const Plot& plot, const Axis& x, const Axis& y) {
   return svg;
 }
 
-std::string series_svg(const PlotSeries& series, const Axis& x, const Axis& y) {
+std::string series_svg(const PlotSeries& series, const PlotAxis& x, const PlotAxis& y) {
   std::string svg = fmt::format("<g class=\"series\"><title>{}</title>\n", escape_html(series.name));
   std::string path;
   for (const PlotPoint& point : series.points) {
@@ -245,8 +245,8 @@ std::vector<double> linear_ticks(double low, double high) {
 }
 
 std::string format_svg(const Plot& plot) {
-  const Axis x = x_axis(plot);
-  const Axis y = y_axis(plot);
+  const PlotAxis x = x_axis(plot);
+  const PlotAxis y = y_axis(plot);
   const double legend_top = kTop + kPlotHeight + kBelowAxis;
   const std::size_t legend_rows = (plot.series.size() + kLegendColumns - 1) / kLegendColumns;
   const double height = legend_top + kLegendRow * static_cast<double>(legend_rows) + 8.0;

@@ -12,7 +12,7 @@ struct End {
   Vec3 position, outward;
 };
 
-struct Pair {
+struct EndPair {
   double cost = 0.0;
   double gap = 0.0;  ///< metres; negative where the pieces overlap
   std::size_t a = 0, b = 0;
@@ -32,9 +32,9 @@ std::vector<End> find_ends(const std::vector<TubePiece>& pieces) {
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-std::vector<Pair> pairs_by_cost(const std::vector<TubePiece>& pieces, const GreedyJoiningOptions& options) {
+std::vector<EndPair> pairs_by_cost(const std::vector<TubePiece>& pieces, const GreedyJoiningOptions& options) {
   const std::vector<End> ends = find_ends(pieces);
-  std::vector<Pair> pairs;
+  std::vector<EndPair> pairs;
   for (std::size_t a = 0; a < ends.size(); ++a)
     for (std::size_t b = a + 1; b < ends.size(); ++b) {
       if (a / 2 == b / 2) continue;
@@ -50,7 +50,7 @@ std::vector<Pair> pairs_by_cost(const std::vector<TubePiece>& pieces, const Gree
       if (angle_a > options.angle_max_deg || angle_b > options.angle_max_deg) continue;
       pairs.push_back({gap + options.angle_cost * (angle_a + angle_b), overlap ? -line.norm() : gap, a, b});
     }
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) { return x.cost < y.cost; });
+  std::stable_sort(pairs.begin(), pairs.end(), [](const EndPair& x, const EndPair& y) { return x.cost < y.cost; });
   return pairs;
 }
 
@@ -86,7 +86,7 @@ std::vector<TubeModel> join_greedily(const std::vector<TubePiece>& pieces, const
   std::iota(tube.begin(), tube.end(), std::size_t{0});
   std::vector<double> length;
   for (const TubePiece& piece : pieces) length.push_back(piece.length());
-  for (const Pair& pair : pairs_by_cost(pieces, options)) {
+  for (const EndPair& pair : pairs_by_cost(pieces, options)) {
     const std::size_t tube_a = tube[pair.a / 2], tube_b = tube[pair.b / 2];
     const double joined = length[tube_a] + length[tube_b] + pair.gap;
     if (partner[pair.a] != kFree || partner[pair.b] != kFree || tube_a == tube_b || joined > options.length_max)

@@ -16,7 +16,7 @@ namespace tubebin {
 namespace {
 
 /// The published files keep six digits: a millionth of a metre, and so an axis of 20 mm to some 1e-4.
-constexpr double kDistanceTolerance = 3e-6;
+constexpr double kPlaceTolerance = 3e-6;
 constexpr double kAxisTolerance = 6e-4;
 
 constexpr const char* kTubeLine = "a tube line: <tube id> <node count> <edge count>";
@@ -110,7 +110,7 @@ class Parser {
     const double radius = read_number(word, "radius");
     if (radius <= 0.0) fail("radius {} is not valid; valid: above 0 m", radius);
     if (tube.radius == 0.0) tube.radius = radius;
-    if (std::abs(radius - tube.radius) > kDistanceTolerance)
+    if (std::abs(radius - tube.radius) > kPlaceTolerance)
       fail("radius {} is not that of the tube's first node, {}; a tube has one radius", radius, tube.radius);
   }
 
@@ -138,10 +138,10 @@ class Parser {
     const Vec3& a = tube.nodes[static_cast<std::size_t>(cylinder.node_a)];
     const Vec3& b = tube.nodes[static_cast<std::size_t>(cylinder.node_b)];
     const double distance = (b - a).norm();
-    if (!(distance > kDistanceTolerance)) fail("the edge's two nodes are at the same place");
+    if (!(distance > kPlaceTolerance)) fail("the edge's two nodes are at the same place");
     const double center_error = ((a + b) / 2.0 - center).lpNorm<Eigen::Infinity>();
-    if (!(center_error <= kDistanceTolerance)) fail("the centre is {:.2e} m off the middle of its nodes", center_error);
-    if (!(std::abs(length - distance) <= kDistanceTolerance))
+    if (!(center_error <= kPlaceTolerance)) fail("the centre is {:.2e} m off the middle of its nodes", center_error);
+    if (!(std::abs(length - distance) <= kPlaceTolerance))
       fail("length {} is not the distance of its nodes, {:.6f} m", length, distance);
     // Third column of the rotation matrix, written out so that a quaternion that is no unit one shows up.
     const double w = rotation.w(), x = rotation.x(), y = rotation.y(), z = rotation.z();

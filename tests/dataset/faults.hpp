@@ -31,6 +31,27 @@ void wait_until(Condition condition) {
   while (!condition()) std::this_thread::sleep_for(1ms);
 }
 
+/// What Ctrl-C made of a program whose workers hang.
+struct Stop {
+  ProgramResult result;
+  double seconds = 0.0;  ///< from the signal to the program's end
+};
+
+/// Workers that hang are the slowest to stop: they use up all the time that the program gives them.
+inline Stop stop_hanging(Program& program, const std::string& folder) {
+  for (const pid_t process : processes_of(folder))
+    if (process != program.process()) kill(process, SIGSTOP);
+  const auto start = std::chrono::steady_clock::now();
+  kill(-program.process(), SIGINT);
+  Stop stop{.result = program.wait()};
+  stop.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return stop;
+}
+
+/// What users are promised. Other load may delay a program beyond that, but not each of so many tries.
+constexpr double kStopSecondsMax = 2.0;
+constexpr int kStopTries = 5;
+
 /// A file system of four megabytes, where the test may mount one.
 class SmallDisk {
  public:

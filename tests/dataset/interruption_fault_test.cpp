@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
 #include <random>
 #include <thread>
@@ -108,6 +109,22 @@ TEST_F(Interruption, StopSignalsEndTheRunAndSayHowToGoOn) {
     expect_only_whole_scenes(data);
     expect_completed_as_undisturbed(data);
   }
+}
+
+TEST_F(Interruption, CtrlCEndsWorkersThatHangInTwoSeconds) {
+  double least = kStopSecondsMax + 1.0;
+  for (int i = 0; i < kStopTries && least > kStopSecondsMax; ++i) {
+    const std::string data = folder_ / fmt::format("hanging_{}", i);
+    Program program = start(data);
+    wait_until([&] { return fs::exists(data + "/manifest.jsonl"); });
+    const Stop stop = stop_hanging(program, data);
+    EXPECT_EQ(stop.result.exit_code, 128 + SIGINT);
+    EXPECT_THAT(stop.result.error, AllOf(HasSubstr("Interrupted after"), HasSubstr("same command again")));
+    EXPECT_TRUE(processes_of(data).empty());
+    expect_completed_as_undisturbed(data);
+    least = std::min(least, stop.seconds);
+  }
+  EXPECT_LE(least, kStopSecondsMax);
 }
 
 TEST_F(Interruption, AManifestCutAnywhereIsCompleted) {

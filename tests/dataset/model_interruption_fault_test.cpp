@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -133,18 +134,20 @@ TEST_F(ModelInterruption, StopSignalsEndTheCallAndSayHowToGoOn) {
   }
 }
 
-TEST_F(ModelInterruption, CtrlCEndsWorkersThatHang) {
-  const std::string results = folder_ / "hanging";
-  Program program = start(results);
-  wait_until([&] { return fs::exists(results + "/Q1/001"); });
-  for (const pid_t process : processes_of(results))
-    if (process != program.process()) kill(process, SIGSTOP);
-  kill(-program.process(), SIGINT);
-  const ProgramResult result = program.wait();
-  EXPECT_EQ(result.exit_code, 128 + SIGINT);
-  EXPECT_THAT(result.error, HasSubstr("Interrupted after"));
-  EXPECT_TRUE(processes_of(results).empty());
-  expect_completed_as_undisturbed(results);
+TEST_F(ModelInterruption, CtrlCEndsWorkersThatHangInTwoSeconds) {
+  double least = kStopSecondsMax + 1.0;
+  for (int i = 0; i < kStopTries && least > kStopSecondsMax; ++i) {
+    const std::string results = folder_ / fmt::format("hanging_{}", i);
+    Program program = start(results);
+    wait_until([&] { return fs::exists(results + "/Q1/001"); });
+    const Stop stop = stop_hanging(program, results);
+    EXPECT_EQ(stop.result.exit_code, 128 + SIGINT);
+    EXPECT_THAT(stop.result.error, HasSubstr("Interrupted after"));
+    EXPECT_TRUE(processes_of(results).empty());
+    expect_completed_as_undisturbed(results);
+    least = std::min(least, stop.seconds);
+  }
+  EXPECT_LE(least, kStopSecondsMax);
 }
 
 TEST_F(ModelInterruption, ASecondCallIsRefusedUntilTheFirstIsDead) {

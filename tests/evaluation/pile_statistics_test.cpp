@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kRadius = 0.0125;
 
-PlacedTube straight_tube(const Vec3& start, const Vec3& end) {
+PlacedTube tube_between(const Vec3& start, const Vec3& end) {
   PlacedTube placed;
   placed.tube.radius = kRadius;
   placed.tube.nodes = {start, end};
@@ -19,8 +19,8 @@ PlacedTube straight_tube(const Vec3& start, const Vec3& end) {
 
 TEST(PileStatistics, TwoCrossingTubes) {
   Scene scene;
-  scene.tubes = {straight_tube({-0.2, 0, kRadius}, {0.2, 0, kRadius}),
-                 straight_tube({0, -0.2, 3 * kRadius - 0.0003}, {0, 0.2, 3 * kRadius - 0.0003})};
+  scene.tubes = {tube_between({-0.2, 0, kRadius}, {0.2, 0, kRadius}),
+                 tube_between({0, -0.2, 3 * kRadius - 0.0003}, {0, 0.2, 3 * kRadius - 0.0003})};
   const PileStatistics s = pile_statistics(scene, {1000, 3000});
   EXPECT_NEAR(s.mean_height, 2 * kRadius - 0.00015, 1e-9);
   EXPECT_NEAR(s.top_height, 4 * kRadius - 0.0003, 1e-9);
@@ -35,7 +35,7 @@ TEST(PileStatistics, ALeaningTubeStandsOnItsRim) {
   Scene scene;
   const double tilt = radians(30.0);
   const Vec3 low(0, 0, kRadius * std::cos(tilt));
-  scene.tubes = {straight_tube(low, low + 0.3 * Vec3(std::cos(tilt), 0, std::sin(tilt)))};
+  scene.tubes = {tube_between(low, low + 0.3 * Vec3(std::cos(tilt), 0, std::sin(tilt)))};
   const PileStatistics s = pile_statistics(scene, {10});
   EXPECT_NEAR(s.mean_tilt_deg, 30.0, 1e-9);
   EXPECT_NEAR(s.penetration, 0.0, 1e-12);

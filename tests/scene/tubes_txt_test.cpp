@@ -113,7 +113,7 @@ constexpr const char* kTube =
     "2 0 0 0.5 0.01\n"
     "e_1_2 1 2 1 0.01 0 0 0.25 1 0 0 0 0.5\n";
 
-std::string error_of(const std::string& text) {
+std::string text_error_of(const std::string& text) {
   try {
     parse_tubes_txt(text, "a.txt");
   } catch (const IoError& error) {
@@ -127,28 +127,33 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST(TubesTxt, ErrorsNameLineAndCause) {
-  EXPECT_EQ(error_of(kTube), "no error");
-  EXPECT_EQ(error_of(""), "a.txt: the file is empty; expected the number of tubes");
-  EXPECT_EQ(error_of("ten\n"), "a.txt:1: 'ten' is not the number of tubes");
-  EXPECT_EQ(error_of(replaced(kTube, "1\n", "2\n")),
+  EXPECT_EQ(text_error_of(kTube), "no error");
+  EXPECT_EQ(text_error_of(""), "a.txt: the file is empty; expected the number of tubes");
+  EXPECT_EQ(text_error_of("ten\n"), "a.txt:1: 'ten' is not the number of tubes");
+  EXPECT_EQ(text_error_of(replaced(kTube, "1\n", "2\n")),
             "a.txt: truncated after line 5: the first line says 2 tubes, but there are only 1");
-  EXPECT_EQ(error_of(replaced(kTube, "1\n", "0\n")), "a.txt:2: the file's first line says 0 tubes, but there is more");
-  EXPECT_THAT(error_of(replaced(kTube, "1 2 1\n", "1 4000000000 1\n")),
+  EXPECT_EQ(text_error_of(replaced(kTube, "1\n", "0\n")),
+            "a.txt:2: the file's first line says 0 tubes, but there is more");
+  EXPECT_THAT(text_error_of(replaced(kTube, "1 2 1\n", "1 4000000000 1\n")),
               HasSubstr("a.txt:5: found 13 values, expected a node line"));
-  EXPECT_THAT(error_of(replaced(kTube, "1 2 1\n", "1 2 4000000000\n")),
+  EXPECT_THAT(text_error_of(replaced(kTube, "1 2 1\n", "1 2 4000000000\n")),
               HasSubstr("a.txt: truncated after line 5: expected an edge line"));
-  EXPECT_THAT(error_of(replaced(kTube, "1 2 1\n", "1 -2 1\n")), HasSubstr("a.txt:2: node count '-2'"));
-  EXPECT_THAT(error_of(replaced(kTube, "2 0 0 0.5", "1 0 0 0.5")), HasSubstr("a.txt:4: the node id 1 stands twice"));
-  EXPECT_THAT(error_of(replaced(kTube, "2 0 0 0.5", "2 0 nan 0.5")), HasSubstr("coordinate 'nan' is not a number"));
-  EXPECT_THAT(error_of(replaced(kTube, "2 0 0 0.5 0.01", "2 0 0 0.5 0.02")), HasSubstr("a tube has one radius"));
-  EXPECT_THAT(error_of(replaced(kTube, "1 0 0 0 0.01", "1 0 0 0 -1")), HasSubstr("a.txt:3: radius -1 is not valid"));
-  EXPECT_THAT(error_of(replaced(kTube, "e_1_2 1 2", "e_1_2 1 3")), HasSubstr("a.txt:5: the edge names a node '3'"));
-  EXPECT_THAT(error_of(replaced(kTube, "e_1_2 1 2", "e_1_2 1 1")), HasSubstr("at the same place"));
-  EXPECT_THAT(error_of(replaced(kTube, "1 2 1 0.01", "1 2 0 0.01")), HasSubstr("order '0'"));
-  EXPECT_THAT(error_of(replaced(kTube, "0 0 0.25", "0 0 0.26")), HasSubstr("the centre is 1.00e-02 m off"));
-  EXPECT_THAT(error_of(replaced(kTube, "0 0.5\n", "0 0.6\n")), HasSubstr("length 0.6 is not the distance"));
-  EXPECT_THAT(error_of(replaced(kTube, "0.25 1 0 0 0", "0.25 0 1 0 0")), HasSubstr("the axis is 2.00e+00 off"));
-  EXPECT_THAT(error_of(replaced(replaced(kTube, "1 2 1\n", "1 3 1\n"), "2 0 0", "3 1 1 1 0.01\n2 0 0")),
+  EXPECT_THAT(text_error_of(replaced(kTube, "1 2 1\n", "1 -2 1\n")), HasSubstr("a.txt:2: node count '-2'"));
+  EXPECT_THAT(text_error_of(replaced(kTube, "2 0 0 0.5", "1 0 0 0.5")),
+              HasSubstr("a.txt:4: the node id 1 stands twice"));
+  EXPECT_THAT(text_error_of(replaced(kTube, "2 0 0 0.5", "2 0 nan 0.5")),
+              HasSubstr("coordinate 'nan' is not a number"));
+  EXPECT_THAT(text_error_of(replaced(kTube, "2 0 0 0.5 0.01", "2 0 0 0.5 0.02")), HasSubstr("a tube has one radius"));
+  EXPECT_THAT(text_error_of(replaced(kTube, "1 0 0 0 0.01", "1 0 0 0 -1")),
+              HasSubstr("a.txt:3: radius -1 is not valid"));
+  EXPECT_THAT(text_error_of(replaced(kTube, "e_1_2 1 2", "e_1_2 1 3")),
+              HasSubstr("a.txt:5: the edge names a node '3'"));
+  EXPECT_THAT(text_error_of(replaced(kTube, "e_1_2 1 2", "e_1_2 1 1")), HasSubstr("at the same place"));
+  EXPECT_THAT(text_error_of(replaced(kTube, "1 2 1 0.01", "1 2 0 0.01")), HasSubstr("order '0'"));
+  EXPECT_THAT(text_error_of(replaced(kTube, "0 0 0.25", "0 0 0.26")), HasSubstr("the centre is 1.00e-02 m off"));
+  EXPECT_THAT(text_error_of(replaced(kTube, "0 0.5\n", "0 0.6\n")), HasSubstr("length 0.6 is not the distance"));
+  EXPECT_THAT(text_error_of(replaced(kTube, "0.25 1 0 0 0", "0.25 0 1 0 0")), HasSubstr("the axis is 2.00e+00 off"));
+  EXPECT_THAT(text_error_of(replaced(replaced(kTube, "1 2 1\n", "1 3 1\n"), "2 0 0", "3 1 1 1 0.01\n2 0 0")),
               HasSubstr("no edge of this tube uses its node 3"));
 }
 
@@ -159,7 +164,7 @@ TEST(TubesTxt, DamageIsSurvivedAndNamed) {
     std::string damaged = whole.substr(0, random.bits() % whole.size() + 1);
     for (int hit = random.integer(0, 3); hit > 0; --hit)
       damaged[random.bits() % damaged.size()] = static_cast<char>(random.integer(0, 255));
-    const std::string error = error_of(damaged);
+    const std::string error = text_error_of(damaged);
     if (error != "no error") {
       EXPECT_THAT(error, StartsWith("a.txt:"));
     }

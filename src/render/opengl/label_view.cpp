@@ -9,7 +9,7 @@ namespace tubebin {
 namespace {
 
 /// With so many facets a tube's outline is at most 0.1 % of its radius off, a hundredth of a pixel.
-constexpr Fineness kFineness = {.facets = 64};
+constexpr Fineness kLabelFineness = {.facets = 64};
 /// Metres. OpenGL needs a near plane before the eye; the floor at exactly range_max must not be cut off by
 /// rounding.
 constexpr double kNearestDepth = 1e-3;
@@ -50,12 +50,12 @@ Image draw_label_view(const Scene& scene, const PixelWindow& window) {
   const std::vector<Color> colors = label_colors(scene.tubes.size());
   const Vec3& origin = scene.scanner.position;
   Mesh bin;
-  for (const Box& box : bin_boxes(scene.bin)) add_box(box, origin, kFineness, bin);
+  for (const Box& box : bin_boxes(scene.bin)) add_box(box, origin, kLabelFineness, bin);
   set_color(colors[0]);
   draw(bin);
   for (std::size_t i = 0; i < scene.tubes.size(); ++i) {
     set_color(colors[i + 1]);
-    draw(tube_mesh(scene.tubes[i], origin, kFineness));
+    draw(tube_mesh(scene.tubes[i], origin, kLabelFineness));
   }
   return context.read();
 }

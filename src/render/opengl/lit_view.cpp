@@ -12,7 +12,7 @@
 namespace tubebin {
 namespace {
 
-constexpr Fineness kFineness = {.facets = 24, .cell = 0.015};
+constexpr Fineness kLitFineness = {.facets = 24, .cell = 0.015};
 constexpr Fineness kCasterFineness = {.facets = 10};
 constexpr int kSunMapPixels = 1536;
 constexpr double kElevation = radians(52.0);
@@ -140,13 +140,14 @@ class LitView {
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     const std::vector<Color> colors = label_colors(scene_.tubes.size());
-    draw_lit(bin_walls(scene_.bin, Wall::solid, view_, kFineness), colors[0], {.alpha = 1.0F, .highlight = 0.02F});
+    draw_lit(bin_walls(scene_.bin, Wall::solid, view_, kLitFineness), colors[0], {.alpha = 1.0F, .highlight = 0.02F});
     for (std::size_t i = 0; i < scene_.tubes.size(); ++i)
-      draw_lit(tube_mesh(scene_.tubes[i], Vec3::Zero(), kFineness), colors[i + 1], {.alpha = 1.0F, .highlight = 0.10F});
+      draw_lit(tube_mesh(scene_.tubes[i], Vec3::Zero(), kLitFineness), colors[i + 1],
+               {.alpha = 1.0F, .highlight = 0.10F});
     draw_table();
     glEnable(GL_CULL_FACE);
     glDepthMask(GL_FALSE);
-    draw_lit(bin_walls(scene_.bin, Wall::glass, view_, kFineness), colors[0], {.alpha = 0.22F, .highlight = 0.0F});
+    draw_lit(bin_walls(scene_.bin, Wall::glass, view_, kLitFineness), colors[0], {.alpha = 0.22F, .highlight = 0.0F});
     glDepthMask(GL_TRUE);
     glDisable(GL_CULL_FACE);
   }
