@@ -30,7 +30,7 @@ struct PclCloud {
 };
 
 /// A cylinder without ends, and the points that RANSAC found on it.
-struct Axis {
+struct CylinderAxis {
   Vec3 point, direction;
   Segment inliers;
 
@@ -45,8 +45,8 @@ struct Axis {
 };
 
 /// The cylinder on which RANSAC finds most of a sample of the points.
-std::optional<Axis> search_cylinder(const FilteredCloud& cloud, const Segment& remaining, double radius,
-                                    const RegionGrowingOptions& options) {
+std::optional<CylinderAxis> search_cylinder(const FilteredCloud& cloud, const Segment& remaining, double radius,
+                                            const RegionGrowingOptions& options) {
   // RANSAC's time goes into counting inliers, and some hundred points tell a good cylinder from a bad one.
   constexpr std::size_t kSample = 400;
   PclCloud sample;
@@ -69,13 +69,14 @@ std::optional<Axis> search_cylinder(const FilteredCloud& cloud, const Segment& r
   pcl::ModelCoefficients c;
   sac.segment(inliers, c);
   if (inliers.indices.size() < 5 || c.values.size() != 7) return std::nullopt;
-  return Axis{.point = Vec3(double(c.values[0]), double(c.values[1]), double(c.values[2])),
-              .direction = Vec3(double(c.values[3]), double(c.values[4]), double(c.values[5])).normalized(),
-              .inliers = {}};
+  return CylinderAxis{.point = Vec3(double(c.values[0]), double(c.values[1]), double(c.values[2])),
+                      .direction = Vec3(double(c.values[3]), double(c.values[4]), double(c.values[5])).normalized(),
+                      .inliers = {}};
 }
 
 /// Sorts the points into the axis's inliers and the rest.
-Segment take_inliers(const FilteredCloud& cloud, const Segment& points, Axis& axis, double radius, double band) {
+Segment take_inliers(const FilteredCloud& cloud, const Segment& points, CylinderAxis& axis, double radius,
+                     double band) {
   Segment left, inliers;
   for (const std::uint32_t i : points)
     (std::abs(axis.distance(cloud.points[i].cast<double>()) - radius) < band ? inliers : left).push_back(i);
@@ -84,7 +85,7 @@ Segment take_inliers(const FilteredCloud& cloud, const Segment& points, Axis& ax
 }
 
 /// Least squares with the known radius on the inliers.
-void refine(const FilteredCloud& cloud, Axis& axis, double radius) {
+void refine(const FilteredCloud& cloud, CylinderAxis& axis, double radius) {
   double low = 0.0, high = 0.0;
   std::vector<SurfacePoint> surface;
   for (std::size_t k = 0; k < axis.inliers.size(); k += axis.inliers.size() / 500 + 1) {
@@ -102,8 +103,8 @@ void refine(const FilteredCloud& cloud, Axis& axis, double radius) {
 }
 
 /// The most populated cylinder that is found among the points, its inliers removed from them.
-std::optional<Axis> take_cylinder(const FilteredCloud& cloud, Segment& remaining, double radius,
-                                  const RegionGrowingOptions& options) {
+std::optional<CylinderAxis> take_cylinder(const FilteredCloud& cloud, Segment& remaining, double radius,
+                                          const RegionGrowingOptions& options) {
   auto axis = search_cylinder(cloud, remaining, radius, options);
   if (!axis) return std::nullopt;
   const double band = options.inlier_distance * radius;
@@ -115,23 +116,23 @@ std::optional<Axis> take_cylinder(const FilteredCloud& cloud, Segment& remaining
 }
 
 /// Gives every point to the cylinder whose surface it is nearest to.
-void settle_inliers(const FilteredCloud& cloud, std::vector<Axis>& axes, double radius) {
+void settle_inliers(const FilteredCloud& cloud, std::vector<CylinderAxis>& axes, double radius) {
   Segment all;
-  for (Axis& axis : axes) {
+  for (CylinderAxis& axis : axes) {
     all.insert(all.end(), axis.inliers.begin(), axis.inliers.end());
     axis.inliers.clear();
   }
   for (const std::uint32_t i : all) {
     const Vec3 p = cloud.points[i].cast<double>();
-    const auto off = [&](const Axis& axis) { return axis.distance_off(p, radius); };
-    std::min_element(axes.begin(), axes.end(), [&](const Axis& a, const Axis& b) {
+    const auto off = [&](const CylinderAxis& axis) { return axis.distance_off(p, radius); };
+    std::min_element(axes.begin(), axes.end(), [&](const CylinderAxis& a, const CylinderAxis& b) {
       return off(a) < off(b);
     })->inliers.push_back(i);
   }
 }
 
-void find_extents(const FilteredCloud& cloud, std::vector<Axis>& axes) {
-  for (Axis& axis : axes) {
+void find_extents(const FilteredCloud& cloud, std::vector<CylinderAxis>& axes) {
+  for (CylinderAxis& axis : axes) {
     axis.low = std::numeric_limits<double>::infinity();
     axis.high = -axis.low;
     for (const std::uint32_t i : axis.inliers) {
@@ -144,20 +145,23 @@ void find_extents(const FilteredCloud& cloud, std::vector<Axis>& axes) {
 
 /// The first cylinders of a segment cut across its bends, and the later ones make do with the strips that were left:
 /// points and axes are settled in turns, as k-means does, and cylinders that others can do without go.
-void settle(const FilteredCloud& cloud, std::vector<Axis>& axes, double radius, const RegionGrowingOptions& options) {
+void settle(const FilteredCloud& cloud, std::vector<CylinderAxis>& axes, double radius,
+            const RegionGrowingOptions& options) {
   constexpr int kRounds = 4;
   const double band = options.inlier_distance * radius;
   for (int round = 0; round < kRounds && !axes.empty(); ++round) {
     find_extents(cloud, axes);
     settle_inliers(cloud, axes, radius);
-    for (Axis& axis : axes) refine(cloud, axis, radius);
+    for (CylinderAxis& axis : axes) refine(cloud, axis, radius);
     find_extents(cloud, axes);
-    const auto fewest = std::min_element(
-        axes.begin(), axes.end(), [](const Axis& a, const Axis& b) { return a.inliers.size() < b.inliers.size(); });
+    const auto fewest = std::min_element(axes.begin(), axes.end(), [](const CylinderAxis& a, const CylinderAxis& b) {
+      return a.inliers.size() < b.inliers.size();
+    });
     const auto is_spared = [&](std::uint32_t i) {
       const Vec3 p = cloud.points[i].cast<double>();
-      return std::any_of(axes.begin(), axes.end(),
-                         [&](const Axis& axis) { return &axis != &*fewest && axis.distance_off(p, radius) < band; });
+      return std::any_of(axes.begin(), axes.end(), [&](const CylinderAxis& axis) {
+        return &axis != &*fewest && axis.distance_off(p, radius) < band;
+      });
     };
     const auto spared = std::count_if(fewest->inliers.begin(), fewest->inliers.end(), is_spared);
     if (axes.size() < 2 || 10 * static_cast<std::size_t>(spared) < 7 * fewest->inliers.size()) continue;
@@ -172,7 +176,7 @@ void settle(const FilteredCloud& cloud, std::vector<Axis>& axes, double radius, 
 }
 
 /// From the first to the last of its points along the axis, a hundredth of them cut off at either end as strays.
-TubePiece make_piece(const FilteredCloud& cloud, const Axis& axis, double radius) {
+TubePiece make_piece(const FilteredCloud& cloud, const CylinderAxis& axis, double radius) {
   std::vector<double> along;
   for (const std::uint32_t i : axis.inliers)
     along.push_back((cloud.points[i].cast<double>() - axis.point).dot(axis.direction));
@@ -229,7 +233,7 @@ std::vector<Segment> grow_regions(const FilteredCloud& cloud, const RegionGrowin
 
 std::vector<TubePiece> fit_cylinders(const FilteredCloud& cloud, const Segment& segment, double radius,
                                      const RegionGrowingOptions& options) {
-  std::vector<Axis> axes;
+  std::vector<CylinderAxis> axes;
   Segment remaining = segment;
   while (static_cast<int>(remaining.size()) >= options.region_size_min) {
     auto axis = take_cylinder(cloud, remaining, radius, options);
@@ -238,7 +242,7 @@ std::vector<TubePiece> fit_cylinders(const FilteredCloud& cloud, const Segment& 
   }
   settle(cloud, axes, radius, options);
   std::vector<TubePiece> pieces;
-  for (const Axis& axis : axes) {
+  for (const CylinderAxis& axis : axes) {
     if (static_cast<int>(axis.inliers.size()) < options.region_size_min) continue;
     TubePiece piece = make_piece(cloud, axis, radius);
     if (piece.length() > radius / 2.0) pieces.push_back(std::move(piece));
