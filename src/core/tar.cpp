@@ -17,12 +17,12 @@ namespace {
 
 constexpr std::size_t kBlock = 512;  // bytes; a tar consists of such
 
-using Reader = std::unique_ptr<archive, decltype(&archive_read_free)>;
+using TarReader = std::unique_ptr<archive, decltype(&archive_read_free)>;
 using Writer = std::unique_ptr<archive, decltype(&archive_write_free)>;
 using Entry = std::unique_ptr<archive_entry, decltype(&archive_entry_free)>;
 
-Reader open_tar(const std::string& path) {
-  Reader reader(archive_read_new(), archive_read_free);
+TarReader open_tar(const std::string& path) {
+  TarReader reader(archive_read_new(), archive_read_free);
   archive_read_support_format_tar(reader.get());
   archive_read_support_format_empty(reader.get());
   if (archive_read_open_filename(reader.get(), path.c_str(), kBlock) != ARCHIVE_OK)
@@ -49,7 +49,7 @@ struct OpenFile {
 }  // namespace
 
 std::vector<TarMember> list_tar(const std::string& path) {
-  const Reader reader = open_tar(path);
+  const TarReader reader = open_tar(path);
   const std::uintmax_t file_bytes = std::filesystem::file_size(path);
   std::vector<TarMember> members;
   archive_entry* entry = nullptr;

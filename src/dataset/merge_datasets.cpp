@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A folder that scenes come from; the first one is the output itself.
-struct Source {
+struct MergeSource {
   std::string folder;
   const Manifest* manifest;
   DatasetFiles files;
@@ -86,7 +86,7 @@ class Merge {
 
  private:
   bool is_recorded(const std::string& scene) const {
-    return std::ranges::any_of(sources_, [&](const Source& s) { return s.manifest->find(scene) != nullptr; });
+    return std::ranges::any_of(sources_, [&](const MergeSource& s) { return s.manifest->find(scene) != nullptr; });
   }
 
   /// In a worker process: the first source that has the scene sound gives it to the output. Its number and what is
@@ -185,7 +185,7 @@ class Merge {
   DatasetFolder& output_;
   std::vector<SceneId> scenes_;
   std::vector<std::unique_ptr<Manifest>> manifests_;
-  std::vector<Source> sources_;
+  std::vector<MergeSource> sources_;
   std::map<std::string, std::size_t> pack_owner_;
   std::vector<std::string> damaged_;  ///< scenes that no source has sound
   MergeReport report_;

@@ -17,9 +17,9 @@ namespace {
 /// A link is ruled out where the scan is e^9 times likelier without it.
 constexpr double kLinkCostLimit = 9.0;
 /// A tube shorter than it should be can have other reasons than a missed link: e^-10.
-constexpr double kShortCostLimit = 10.0;
+constexpr double kLengthCostLimit = 10.0;
 constexpr std::size_t kTreesPerPath = 300;
-constexpr std::size_t kNodeLimit = 2000;
+constexpr std::size_t kSearchNodeLimit = 2000;
 
 /// A tube under construction: paths that links hold together.
 struct Tree {
@@ -111,7 +111,7 @@ class TreeJoiner {
     std::vector<PathCandidate> candidates;
     for (const Tree& tree : trees_) candidates.push_back({.items = tree.paths, .cost = tree.cost});
     std::vector<Tree> chosen;
-    for (const std::uint32_t c : cheapest_path_cover(singles_.size(), candidates, 0, kNodeLimit))
+    for (const std::uint32_t c : cheapest_path_cover(singles_.size(), candidates, 0, kSearchNodeLimit))
       chosen.push_back(trees_[c]);
     return chosen;
   }
@@ -162,7 +162,7 @@ class TreeJoiner {
       for (const std::uint32_t end : {2 * p, 2 * p + 1})
         if (!tree.uses(end) && ends_[end].seen_free < 0.5) room += ends_[end].hidden_reach + radius_;
     const double unexplained = std::max(missing - room, 0.0);
-    return std::min(0.5 * unexplained * unexplained / (sigma * sigma), kShortCostLimit);
+    return std::min(0.5 * unexplained * unexplained / (sigma * sigma), kLengthCostLimit);
   }
 
   void grow(const Tree& tree) {

@@ -8,9 +8,9 @@ namespace tubebin {
 namespace {
 
 /// -log of how many of the other ends out of sight lead to another path of their tube, to how many do not: one to two.
-constexpr double kHiddenEndCost = 0.7;
+constexpr double kHiddenLinkCost = 0.7;
 /// -log of how seldom (1 in 100) a place that a tube takes up is measured as empty.
-constexpr double kEmptyCost = 4.6;
+constexpr double kEmptyLinkCost = 4.6;
 /// In radii: what is farther ahead is met by chance as likely as by a branch.
 constexpr double kReach = 12.0;
 
@@ -95,11 +95,11 @@ std::optional<BranchLink> side_link(const PieceEnd& end, const TubePiece& other,
     return BranchLink{.place = *place, .length = (*place - end.position).norm(), .cost = kOnSideCost};
   auto link = likeliest_side(end, other, around);
   if (!link) return std::nullopt;
-  link->cost += kHiddenEndCost + kEmptyCost * end.seen_free;
+  link->cost += kHiddenLinkCost + kEmptyLinkCost * end.seen_free;
   if (link->cost >= cost_limit) return std::nullopt;
   const double samples = std::max(link->length / (2.0 * around.radius), 1.0);
   link->cost +=
-      kEmptyCost * samples * occlusion.empty_part(line_between(end.position, link->place, around.radius), 1.0);
+      kEmptyLinkCost * samples * occlusion.empty_part(line_between(end.position, link->place, around.radius), 1.0);
   return link->cost < cost_limit ? link : std::nullopt;
 }
 
