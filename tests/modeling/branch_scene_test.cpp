@@ -61,6 +61,21 @@ TEST(Branches, SegmentsOfTreesAreTakenApartAndThoseOfChainsAreNot) {
   }
 }
 
+TEST(Branches, TubesThatHangTogetherByTheirEndsAreTakenApart) {
+  const double apart = 2.02 * kRadius;
+  const Scene scene = scene_of(
+      {tube_along({{-0.10, 0.0, 0.02}, {-0.05, 0.0, 0.15}}), tube_along({{-0.10, apart, 0.02}, {-0.05, apart, 0.15}})});
+  const Cloud cloud = scan(scene).cloud;
+  const ModelingInput input = input_of(cloud, scene.bin);
+  const FilteredCloud filtered = filter(input, view_of(input), {}, kRadius, 1);
+  std::vector<Segment> segments = segment_by_votes(filtered, kRadius);
+  ASSERT_EQ(segments.size(), 1u);  // the votes of the flat ends lie between the centrelines
+  EXPECT_EQ(split_branches(filtered, segments[0], kRadius).size(), 2u);
+  const ModelingResult result = model_tubes(input, known_radius());
+  EXPECT_EQ(result.tubes.size(), 2u);
+  EXPECT_GE(micro_recall_of(result, cloud), 0.995);
+}
+
 TEST(Branches, StartOnASideButNotAtAnEnd) {
   const std::vector<Vec3> nodes = {{0, 0, 0}, {0.2, 0, 0}};
   EXPECT_TRUE(place_on_side({0.1, 0.6 * kRadius, 0}, {0, -1, 0}, nodes, kRadius));
