@@ -22,8 +22,7 @@ bool try_to_lock(int descriptor, FolderLock::Kind kind) {
   const int operation = (kind == FolderLock::Kind::exclusive ? LOCK_EX : LOCK_SH) | LOCK_NB;
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (flock(descriptor, operation) != 0) {
-    const bool keeps_no_locks = errno != EWOULDBLOCK && errno != EINTR;
-    if (keeps_no_locks && kind == FolderLock::Kind::part) return true;
+    if (errno != EWOULDBLOCK && errno != EINTR) return true;  // a file system that keeps no locks
     if (std::chrono::steady_clock::now() > deadline) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }

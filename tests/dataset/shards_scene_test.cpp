@@ -327,6 +327,16 @@ TEST_F(Packs, AreMergedAndCompleted) {
   EXPECT_EQ(run_generate_dataset({"--verify", data_}).exit_code, 0);
 }
 
+TEST_F(Packs, OfOneSharedFolderAreMerged) {
+  for (const char* part : {"2/3", "1/3", "3/3"}) ASSERT_EQ(generate(data_, {"--shard", part, "--pack"}).exit_code, 0);
+  const ProgramResult merged = run_generate_dataset({"--merge", data_});
+  EXPECT_EQ(merged.exit_code, 0) << merged.out << merged.error;
+  EXPECT_FALSE(fs::exists(data_ + "/manifest.parts"));
+  EXPECT_EQ(all_files(data_), expected_);
+  EXPECT_THAT(generate(data_).error, HasSubstr("8 were there before"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(data_ + "/packs"), {}), 3);
+}
+
 TEST_F(Packs, ADamagedSceneIsFoundAndRepaired) {
   ASSERT_EQ(generate(data_, {"--pack"}).exit_code, 0);
   const std::string pack = data_ + "/packs/00001-of-00001.tar";

@@ -6,14 +6,14 @@
 namespace tubebin {
 
 /// Holds an advisory lock on `folder`/.lock while it lives. Processes forked from its holder share it, so it is free
-/// once all of them have ended, however they ended.
+/// once all of them have ended, however they ended. File systems that keep no locks, as some of a network, give it to
+/// everybody: it finds the mistake of starting two runs, and parts of one job don't depend on it.
 class FolderLock {
  public:
   enum class Kind {
     exclusive,
     shared,  ///< of those who only read; no file is made for it
-    part     ///< of those who each make their own part. Nothing depends on it, since network file systems may not keep
-             ///< it: where they do, it keeps those out who want the folder to themselves
+    part     ///< of those who each make their own part; it keeps those out who want the folder to themselves
   };
 
   /// Throws ConfigError where another run holds the folder (naming its process) and IoError where the lock file
