@@ -132,8 +132,8 @@ std::vector<std::size_t> deal(const std::vector<std::int64_t>& costs, Shard shar
   return own;
 }
 
-std::int64_t generation_cost(int tubes) { return 22'000 + 3'000 * tubes + 650 * std::int64_t{tubes} * tubes; }
+std::int64_t generation_cost(int tubes) { return 11'000 + 2'000 * tubes + 430 * std::int64_t{tubes} * tubes; }
 
-std::int64_t modeling_cost(int tubes) { return 15'000 + 4'000 * tubes + 150 * std::int64_t{tubes} * tubes; }
+std::int64_t modeling_cost(int tubes) { return 12'000 + 3'700 * tubes + 120 * std::int64_t{tubes} * tubes; }
 
 }  // namespace tubebin
