@@ -11,7 +11,7 @@ kinds=("${@:2}")
 # Where a name stands in two files of one unit, large units can't be compiled, and it takes file by file.
 build() {
   cmake --build --preset "$preset" "$@" && return
-  cmake --preset "$preset" -N -L | grep -q 'CMAKE_UNITY_BUILD="ON"' || return 1
+  cmake --preset "$preset" -N -L | grep 'CMAKE_UNITY_BUILD="ON"' > /dev/null || return 1
   echo "Failed in large units (CONTRIBUTING.md); building file by file"
   cmake --preset "$preset" -DTUBEBIN_WERROR=ON -DCMAKE_UNITY_BUILD=OFF
   cmake --build --preset "$preset" "$@"
