@@ -1,7 +1,6 @@
 #include "tubebin/dataset/model_dataset.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <filesystem>
 #include <map>
@@ -14,6 +13,7 @@
 #include "tubebin/dataset/cloud_files.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/dataset/folder_lock.hpp"
+#include "tubebin/dataset/modeling_run.hpp"
 #include "tubebin/dataset/whole_folder.hpp"
 #include "tubebin/dataset/worker_pool.hpp"
 #include "tubebin/evaluation/run_score.hpp"
@@ -24,20 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-const char* name_of(ModelingMethod method) {
-  return method == ModelingMethod::centerline ? "centerline" : "region_growing";
-}
-
-/// One cloud by one method at one ratio.
-struct Run {
-  std::string scene;  ///< "A10/007"
-  std::string cloud;  ///< the name of its file
-  ModelingMethod method = ModelingMethod::centerline;
-  double ratio = 1.0;
-
-  std::string folder() const { return fmt::format("{}/{}_{}", scene, name_of(method), ratio); }
-};
 
 /// The data set's clouds, of each set and number of tubes the first ones alone where options say so.
 std::vector<CloudFile> choose_clouds(const DatasetFiles& files, const BatchOptions& options) {
@@ -53,36 +39,6 @@ std::vector<CloudFile> choose_clouds(const DatasetFiles& files, const BatchOptio
     });
   }
   return clouds;
-}
-
-/// Both methods get the same seed, and so the same points.
-std::uint64_t run_seed(std::uint64_t seed, const Run& run) {
-  std::uint64_t mixed = derive_seed({seed, std::bit_cast<std::uint64_t>(run.ratio)});
-  for (const char c : run.scene)
-    mixed = derive_seed({mixed, static_cast<std::uint64_t>(static_cast<unsigned char>(c))});
-  return mixed;
-}
-
-ModelConfig run_config(const ModelConfig& config, const Run& run) {
-  ModelConfig own = config;
-  own.modeling.method = run.method;
-  own.modeling.filtering.ratio = run.ratio;
-  own.modeling.seed = run_seed(config.modeling.seed, run);
-  return own;
-}
-
-/// Ground-truth label of every input point: its own, or the one whose colour scene.json says it has.
-std::vector<Label> truth_labels(const CloudToModel& input) {
-  if (!input.cloud.labels.empty()) return input.cloud.labels;
-  if (input.cloud.colors.empty() || !input.scene) return {};
-  std::map<Color, Label> label_of;
-  for (std::size_t k = 0; k < input.scene->colors.size(); ++k) label_of[input.scene->colors[k]] = static_cast<Label>(k);
-  std::vector<Label> labels;
-  for (const Color color : input.cloud.colors) {
-    const auto entry = label_of.find(color);
-    labels.push_back(entry == label_of.end() ? 0 : entry->second);
-  }
-  return labels;
 }
 
 void add_contingency(Json& json, const CloudToModel& input, const ModelingResult& result) {
@@ -107,7 +63,7 @@ void add_contingency(Json& json, const CloudToModel& input, const ModelingResult
   for (const auto& [pair, points] : counts) json["contingency"].push_back({pair.first, pair.second, points});
 }
 
-std::string format_result(const Run& run, const CloudToModel& input, const ModelingResult& result, std::uint64_t seed) {
+std::string format_result(const ModelingRun& run, const CloudToModel& input, const ModelingResult& result, std::uint64_t seed) {
   const RunKey name = parse_scene_name(run.scene);
   const std::size_t tubes = input.scene ? input.scene->scene.tubes.size() : static_cast<std::size_t>(name.tubes);
   const auto unlabeled = std::count(result.labels.begin(), result.labels.end(), Label{0});
@@ -128,7 +84,7 @@ std::string format_result(const Run& run, const CloudToModel& input, const Model
 }
 
 /// In a worker process.
-AttemptResult do_run(const Run& run, const DatasetFiles& dataset, const BatchOptions& options,
+AttemptResult do_run(const ModelingRun& run, const DatasetFiles& dataset, const BatchOptions& options,
                      const ModelConfig& config) {
   CloudToModel input;
   ModelingResult result;
@@ -229,15 +185,15 @@ std::string failures_path(const BatchOptions& options) {
   return options.results + (options.shard ? "/failures." + options.shard->name() + ".jsonl" : "/failures.jsonl");
 }
 
-std::vector<Run> list_runs(const BatchOptions& options, const std::vector<CloudFile>& clouds) {
-  std::vector<Run> runs;
+std::vector<ModelingRun> list_runs(const BatchOptions& options, const std::vector<CloudFile>& clouds) {
+  std::vector<ModelingRun> runs;
   for (const auto& [scene, file] : clouds)
     for (const ModelingMethod method : options.methods)
       for (const double ratio : options.ratios) runs.push_back({scene, file, method, ratio});
   return runs;
 }
 
-bool has_run(const BatchOptions& options, const Run& run) {
+bool has_run(const BatchOptions& options, const ModelingRun& run) {
   return fs::exists(options.results + "/" + run.folder()) ||
          std::ranges::any_of(options.other_results,
                              [&](const std::string& other) { return fs::exists(other + "/" + run.folder()); });
@@ -282,7 +238,7 @@ BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config
   settle_index(options, config, all_clouds);
   const NothingUnfinished nothing_unfinished(options, clouds);
 
-  const std::vector<Run> runs = list_runs(options, clouds);
+  const std::vector<ModelingRun> runs = list_runs(options, clouds);
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < runs.size(); ++i)
     if (!has_run(options, runs[i])) missing.push_back(i);
@@ -295,7 +251,7 @@ BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config
           [&](const JobOutcome& outcome) {
             progress.count_done();
             if (outcome.succeeded) return;
-            const Run& run = runs[outcome.job];
+            const ModelingRun& run = runs[outcome.job];
             const FailedAttempt& last = outcome.failed.back();
             const std::string why = last.detail.empty() ? last.reason : last.detail;
             report.failed.push_back(fmt::format("{}: {}", run.folder(), why));

@@ -1,0 +1,142 @@
+/// Tunes the parameters of a modelling method on a data set.
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "tubebin/core/error.hpp"
+#include "tubebin/dataset/calibration.hpp"
+#include "tubebin/dataset/dataset_config.hpp"
+#include "tubebin/dataset/model_dataset.hpp"
+#include "tubebin/dataset/worker_pool.hpp"
+
+namespace {
+
+using namespace tubebin;
+
+constexpr const char* kExamples = R"(
+Examples:
+  calibrate_modeler dataset_b --output modeling.yaml
+      tunes region_growing on half of the scenes, measures on the other half, and writes what model_tubes --config reads
+  calibrate_modeler dataset_b --output modeling.yaml --ratios 0.1,0.3 --budget 100 --jobs 4
+      for two downsampling ratios at once, and with more patience
+  calibrate_modeler dataset_b --output joining.yaml --config modeling.yaml --parameter greedy_joining.gap_max
+                    --parameter greedy_joining.angle_cost=0.0005:0.005:log
+      two parameters alone, one over a range of your own; all others stay as the configuration has them
+
+Run the same command again after an interruption, or with a greater --budget: models that were measured already are
+taken from the folder modeling.yaml.trials. See docs/calibration.md.
+Exit codes: 0 done; 1 input or output failed; 2 wrong usage or configuration; 128 + the signal's number when
+interrupted (Ctrl-C: 130).)";
+
+struct Arguments {
+  CalibrationOptions options;
+  std::string config;
+  std::string method;
+  std::string ratios;
+  std::vector<std::string> parameters;
+  bool quiet = false;
+};
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  CalibrationOptions& options = arguments.options;
+  options.jobs = available_cores();
+  app.add_option("DATASET", options.dataset, "A data set's folder with ground truth")->required();
+  app.add_option("-o,--output", options.output, "The tuned configuration")->type_name("modeling.yaml")->required();
+  app.add_option("-c,--config", arguments.config, "Configuration to begin with; without it, the defaults")
+      ->type_name("modeling.yaml");
+  app.add_option("--method", arguments.method,
+                 "centerline or region_growing; without it, the configuration's, or region_growing, which has "
+                 "parameters to tune")
+      ->check(CLI::IsMember({"centerline", "region_growing"}));
+  app.add_option("--parameter", arguments.parameters,
+                 "KEY, KEY=LOW:HIGH or KEY=LOW:HIGH:log to tune; repeatable; without it, the method's own")
+      ->allow_extra_args(false)
+      ->type_name("KEY=LOW:HIGH");
+  app.add_option("--ratios", arguments.ratios, "Downsampling ratios to tune for: 0.1,0.3,1 or first:last:step")
+      ->type_name("0.1,0.3");
+  app.add_option("--held-back", options.held_back, "Share of the scenes that is measured on and not tuned on")
+      ->check(CLI::Range(0.01, 0.99))
+      ->capture_default_str();
+  app.add_option("--budget", options.budget, "How often all training clouds may be modelled")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "Of the split and of the search")->capture_default_str();
+  app.add_option("-j,--jobs", options.jobs, "Worker processes")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_flag("-q,--quiet", arguments.quiet, "No progress, only errors and results");
+}
+
+ModelConfig resolve_config(const Arguments& arguments) {
+  ModelConfig config;
+  config.modeling.method = ModelingMethod::region_growing;
+  if (!arguments.config.empty()) config = load_model_config(arguments.config);
+  if (!arguments.method.empty())
+    config.modeling.method =
+        arguments.method == "centerline" ? ModelingMethod::centerline : ModelingMethod::region_growing;
+  return config;
+}
+
+void print_parameters(const CalibrationReport& report) {
+  fmt::print("{:36} {:>9} {:>9}   {}\n", "parameter", "before", "after", "range");
+  for (std::size_t p = 0; p < report.parameters.size(); ++p)
+    fmt::print("{:36} {:>9} {:>9}   {} to {}\n", report.parameters[p].key, report.before[p], report.after[p],
+               report.parameters[p].range.low, report.parameters[p].range.high);
+}
+
+void print_recalls(const char* name, const BeforeAfter& recalls) {
+  std::size_t better = 0, worse = 0;
+  for (std::size_t i = 0; i < recalls.before.size(); ++i) {
+    better += recalls.after[i] > recalls.before[i] ? 1u : 0u;
+    worse += recalls.after[i] < recalls.before[i] ? 1u : 0u;
+  }
+  fmt::print("{:36} {:9.4f} {:9.4f}   {:+.4f} +- {:.4f} (standard error); {} runs better, {} worse, {} alike\n", name,
+             recalls.mean_before(), recalls.mean_after(), recalls.mean_gain(), recalls.gain_error(), better, worse,
+             recalls.before.size() - better - worse);
+}
+
+int run(Arguments& arguments) {
+  CalibrationOptions& options = arguments.options;
+  const ModelConfig config = resolve_config(arguments);
+  options.ratios = arguments.ratios.empty() ? std::vector{config.modeling.filtering.ratio} : parse_ratios(arguments.ratios);
+  for (const std::string& text : arguments.parameters) options.parameters.push_back(parse_parameter(text));
+  const CalibrationReport report =
+      calibrate_modeler(options, config, arguments.quiet ? Progress::Style::none : Progress::Style::automatic);
+  if (report.signal != 0) {
+    fmt::print(stderr, "Interrupted after {} models; they are kept. Run the same command again for the rest.\n",
+               report.runs_before + report.runs_made);
+    return 128 + report.signal;
+  }
+  print_parameters(report);
+  fmt::print("\n{:36} {:>9} {:>9}   gain\n", "mean micro-recall", "before", "after");
+  print_recalls(fmt::format("tuned on: {} scenes", report.training_scenes.size()).c_str(), report.training);
+  print_recalls(fmt::format("held back: {} scenes", report.held_back_scenes.size()).c_str(), report.held_back);
+  fmt::print("\n{}: {} settings tried; {} models made in {:.1f} s, {} there before\n", options.output,
+             report.setting_count, report.runs_made, report.seconds, report.runs_before);
+  if (report.failed_runs > 0)
+    fmt::print(stderr, "{} models crashed or took too long and count as 0; {}.trials/runs.jsonl names them\n",
+               report.failed_runs, options.output);
+  if (report.held_back.mean_gain() < 0.0)
+    fmt::print(stderr, "On the scenes that were held back the tuned parameters are worse: more scenes would help.\n");
+  return static_cast<int>(ExitCode::done);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Tunes the parameters of a modelling method on a data set by micro-recall, and measures them on scenes "
+               "that it did not tune on.");
+  app.footer(kExamples);
+  app.set_version_flag("--version", tool_version());
+  add_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+    return run(arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+  } catch (const ConfigError& error) {
+    fmt::print(stderr, "calibrate_modeler: {}\n", error.what());
+    return static_cast<int>(ExitCode::usage);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "calibrate_modeler: {}\n", error.what());
+    return static_cast<int>(ExitCode::failed);
+  }
+}
