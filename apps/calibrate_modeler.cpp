@@ -95,7 +95,8 @@ void print_recalls(const char* name, const BeforeAfter& recalls) {
 int run(Arguments& arguments) {
   CalibrationOptions& options = arguments.options;
   const ModelConfig config = resolve_config(arguments);
-  options.ratios = arguments.ratios.empty() ? std::vector{config.modeling.filtering.ratio} : parse_ratios(arguments.ratios);
+  options.ratios =
+      arguments.ratios.empty() ? std::vector{config.modeling.filtering.ratio} : parse_ratios(arguments.ratios);
   for (const std::string& text : arguments.parameters) options.parameters.push_back(parse_parameter(text));
   const CalibrationReport report =
       calibrate_modeler(options, config, arguments.quiet ? Progress::Style::none : Progress::Style::automatic);
@@ -122,8 +123,9 @@ int run(Arguments& arguments) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app("Tunes the parameters of a modelling method on a data set by micro-recall, and measures them on scenes "
-               "that it did not tune on.");
+  CLI::App app(
+      "Tunes the parameters of a modelling method on a data set by micro-recall, and measures them on scenes "
+      "that it did not tune on.");
   app.footer(kExamples);
   app.set_version_flag("--version", tool_version());
   add_options(app, arguments);

@@ -92,8 +92,8 @@ std::string describe_origin(const CalibrationReport& report, const CalibrationOp
       "# of {:4} training runs   {:.4f}   {:.4f}\n"
       "# of {:4} held-back runs  {:.4f}   {:.4f}, {:+.4f} +- {:.4f} (standard error)\n"
       "# Tuned:\n",
-      tool_version(), report.training_scenes.size(), report.held_back_scenes.size(), options.seed,
-      report.setting_count, report.training.before.size(), report.training.mean_before(), report.training.mean_after(),
+      tool_version(), report.training_scenes.size(), report.held_back_scenes.size(), options.seed, report.setting_count,
+      report.training.before.size(), report.training.mean_before(), report.training.mean_after(),
       report.held_back.before.size(), report.held_back.mean_before(), report.held_back.mean_after(),
       report.held_back.mean_gain(), report.held_back.gain_error());
   for (std::size_t p = 0; p < report.parameters.size(); ++p)
@@ -104,8 +104,8 @@ std::string describe_origin(const CalibrationReport& report, const CalibrationOp
 
 void write_output(const CalibrationReport& report, const CalibrationOptions& options, const ModelConfig& start) {
   ModelConfig tuned = apply_setting(start, report.parameters, report.after);
-  write_file_atomically(options.output, describe_origin(report, options) +
-                                            write_yaml([&](Fields& fields) { describe(fields, tuned); }));
+  write_file_atomically(
+      options.output, describe_origin(report, options) + write_yaml([&](Fields& fields) { describe(fields, tuned); }));
 }
 
 void calibrate(const CalibrationOptions& options, const ModelConfig& start, const Split& split,
@@ -162,8 +162,10 @@ CalibrationReport calibrate_modeler(const CalibrationOptions& options, const Mod
   const std::string folder = options.output + ".trials";
   fs::create_directories(folder);
   const FolderLock lock(folder);
-  const double scored = options.budget * static_cast<double>(split.training.size()) + 2.0 * static_cast<double>(split.held_back.size());
-  Progress progress(static_cast<std::size_t>(scored * static_cast<double>(options.ratios.size())), "clouds", progress_style);
+  const double scored =
+      options.budget * static_cast<double>(split.training.size()) + 2.0 * static_cast<double>(split.held_back.size());
+  Progress progress(static_cast<std::size_t>(scored * static_cast<double>(options.ratios.size())), "clouds",
+                    progress_style);
   CalibrationTrials trials(folder, options, start, report.parameters, progress);
   try {
     calibrate(options, start, split, trials, report);

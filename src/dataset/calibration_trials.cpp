@@ -1,8 +1,7 @@
 #include "calibration_trials.hpp"
 
-#include <set>
-
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "number_fields.hpp"
 #include "tubebin/core/atomic_file.hpp"
@@ -129,7 +128,8 @@ void CalibrationTrials::find_missing(const std::vector<Trial>& missing) {
   const PoolOptions pool{.workers = options_.jobs, .attempts_max = 1, .attempt_time_limit = options_.time_limit};
   const PoolEvents events{.on_finished = [&](const JobOutcome& outcome) { keep(missing[outcome.job], outcome); },
                           .on_tick = [&] { progress_.show(); }};
-  const PoolReport report = run_jobs(jobs, pool, [&](std::size_t job, int) { return attempt(missing[job]); }, events);
+  const PoolReport report = run_jobs(
+      jobs, pool, [&](std::size_t job, int) { return attempt(missing[job]); }, events);
   if (report.signal != 0) throw CalibrationStopped{report.signal};
 }
 

@@ -39,12 +39,10 @@ bool has_point(const Cloud& cloud) { return std::any_of(cloud.points.begin(), cl
 }  // namespace
 
 PileRelations relate_pile(const Scene& scene) {
-  const std::vector<std::vector<SeenPixel>> views = view_tubes_alone(scene);
-  PileRelations relations;
-  for (const auto& view : views) relations.amodal_pixels.push_back(view.size());
-  relations.occlusions = find_occlusions(scene, views);
-  relations.above = find_above(scene.tubes);
-  return relations;
+  PileView view = view_pile(scene);
+  return {.amodal_pixels = std::move(view.amodal_pixels),
+          .occlusions = std::move(view.occlusions),
+          .above = find_above(scene.tubes)};
 }
 
 std::uint64_t attempt_seed(const DatasetConfig& config, const SceneId& id, int attempt) {

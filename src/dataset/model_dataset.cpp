@@ -63,7 +63,8 @@ void add_contingency(Json& json, const CloudToModel& input, const ModelingResult
   for (const auto& [pair, points] : counts) json["contingency"].push_back({pair.first, pair.second, points});
 }
 
-std::string format_result(const ModelingRun& run, const CloudToModel& input, const ModelingResult& result, std::uint64_t seed) {
+std::string format_result(const ModelingRun& run, const CloudToModel& input, const ModelingResult& result,
+                          std::uint64_t seed) {
   const RunKey name = parse_scene_name(run.scene);
   const std::size_t tubes = input.scene ? input.scene->scene.tubes.size() : static_cast<std::size_t>(name.tubes);
   const auto unlabeled = std::count(result.labels.begin(), result.labels.end(), Label{0});

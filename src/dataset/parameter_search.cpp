@@ -99,7 +99,8 @@ class Search {
   static std::vector<Setting> best_third(const std::vector<Setting>& settings, const std::vector<double>& scores) {
     std::vector<std::size_t> order(settings.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin() + 1, order.end(), [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
+    std::stable_sort(order.begin() + 1, order.end(),
+                     [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
     order.resize((order.size() + kHalvingFactor - 1) / kHalvingFactor);
     std::vector<Setting> best;
     for (const std::size_t i : order) best.push_back(settings[i]);

@@ -82,8 +82,9 @@ TunedParameter parse_parameter(const std::string& text) {
   const auto fields = number_fields([&](Fields& visitor) { describe(visitor, config); });
   const auto field = fields.find(parameter.key);
   if (field == fields.end())
-    throw_config_error("--parameter {}: '{}' is no number of a configuration; model_tubes --config-reference lists them",
-                       text, parameter.key);
+    throw_config_error(
+        "--parameter {}: '{}' is no number of a configuration; model_tubes --config-reference lists them", text,
+        parameter.key);
   parameter.range =
       equals == std::string::npos ? default_range(parameter.key, text) : parse_range(text.substr(equals + 1), text);
   parameter.range.whole = field->second.whole != nullptr;

@@ -57,6 +57,39 @@ void expect_agreement_with_scans(const Scene& scene) {
   EXPECT_EQ(found, expected);
 }
 
+/// Counting alone gives what the pixels give.
+void expect_same_counts(const Scene& scene) {
+  const auto views = view_tubes_alone(scene);
+  const PileView pile = view_pile(scene);
+  ASSERT_EQ(pile.amodal_pixels.size(), views.size());
+  for (std::size_t k = 0; k < views.size(); ++k) EXPECT_EQ(pile.amodal_pixels[k], views[k].size()) << "tube " << k + 1;
+  EXPECT_EQ(pile.occlusions, find_occlusions(scene, views));
+}
+
+TEST(Visibility, CountingAgreesWithThePixels) {
+  for (std::uint64_t seed = 61; seed < 81; ++seed) {
+    Scene scene = random_scene(2 + static_cast<int>(seed % 10), seed);
+    if (seed % 2 == 0) look_closely(scene.scanner, 500, 300);
+    expect_same_counts(scene);
+    scene.scanner.position = {0.9, -0.1, 0.7};  // walls before tubes, tubes partly outside the image
+    scene.scanner.rotation_deg = {0.0, 55.0, 0.0};
+    expect_same_counts(scene);
+    scene.scanner.horizontal_fov_deg /= 3.0;
+    expect_same_counts(scene);
+  }
+}
+
+TEST(Visibility, CountingAgreesWhereTheRangeCutsTubesAndWhereTheyAreHollow) {
+  Scene scene = random_scene(6, 91);
+  scene.scanner.range_max = 1.92;
+  expect_same_counts(scene);
+  scene.scanner.range_min = 1.85;
+  expect_same_counts(scene);
+  scene = random_scene(6, 92);
+  for (PlacedTube& tube : scene.tubes) tube.tube.wall_thickness = 0.2 * tube.tube.radius;
+  expect_same_counts(scene);
+}
+
 TEST(Visibility, AgreesWithScansOfOneAndTwoBodies) {
   for (std::uint64_t seed = 21; seed < 24; ++seed) {
     Scene scene = random_scene(5, seed);

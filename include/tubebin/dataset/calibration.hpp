@@ -26,14 +26,14 @@ TunedParameter parse_parameter(const std::string& text);
 
 struct CalibrationOptions {
   std::string dataset;
-  std::string output;                       ///< modeling.yaml; the trials go into the folder `output`.trials
-  std::vector<TunedParameter> parameters;   ///< empty: the method's default ones
-  std::vector<double> ratios = {1.0};       ///< of the downsampling, each of which makes a run of each cloud
-  double held_back = 0.5;                   ///< of the scenes: not tuned on
-  double budget = 40.0;                     ///< how often all training clouds may be modelled
-  std::uint64_t seed = 1;                   ///< of the split and of the search
+  std::string output;                      ///< modeling.yaml; the trials go into the folder `output`.trials
+  std::vector<TunedParameter> parameters;  ///< empty: the method's default ones
+  std::vector<double> ratios = {1.0};      ///< of the downsampling, each of which makes a run of each cloud
+  double held_back = 0.5;                  ///< of the scenes: not tuned on
+  double budget = 40.0;                    ///< how often all training clouds may be modelled
+  std::uint64_t seed = 1;                  ///< of the split and of the search
   int jobs = 1;
-  double time_limit = 600.0;                ///< seconds a run, beyond which it counts as 0
+  double time_limit = 600.0;  ///< seconds a run, beyond which it counts as 0
 };
 
 /// Micro-recalls of the same runs before and after.
@@ -56,7 +56,7 @@ struct CalibrationReport {
   std::size_t runs_made = 0;    ///< by this call
   std::size_t runs_before = 0;  ///< that earlier calls had made
   std::size_t failed_runs = 0;  ///< that crashed or took too long, and count as 0
-  int signal = 0;               ///< that ended it early, 0 if none did; then nothing but runs_made and runs_before holds
+  int signal = 0;  ///< that ended it early, 0 if none did; then nothing but runs_made and runs_before holds
   double seconds = 0.0;
 };
 

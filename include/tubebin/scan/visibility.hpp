@@ -22,4 +22,14 @@ std::vector<std::vector<SeenPixel>> view_tubes_alone(const Scene& scene);
 /// bodies. At equal depths the lower label is in front, as in scan().
 std::vector<Occlusion> find_occlusions(const Scene& scene, const std::vector<std::vector<SeenPixel>>& views);
 
+struct PileView {
+  std::vector<std::size_t> amodal_pixels;  ///< of tube k at [k - 1]: size of its view alone
+  std::vector<Occlusion> occlusions;       ///< as find_occlusions finds them
+
+  friend bool operator==(const PileView&, const PileView&) = default;
+};
+
+/// The counts of both functions above, without their pixels and several times as fast.
+PileView view_pile(const Scene& scene);
+
 }  // namespace tubebin

@@ -1,0 +1,42 @@
+// What of one pixel's bodies is in front.
+#pragma once
+
+#include "scan/ray_caster.hpp"
+#include "tubebin/scene/camera.hpp"
+
+namespace tubebin {
+
+/// A body's surface that a pixel's ray meets.
+struct Layer {
+  Label label = 0;
+  double depth = 0.0;
+
+  /// At equal depths the lower label is in front, as in scan().
+  bool is_before(const Layer& other) const {
+    return depth < other.depth || (depth == other.depth && label < other.label);
+  }
+};
+
+/// The bin as far as it can stand before something.
+class BinFront {
+ public:
+  struct Part {
+    Box box;
+    PixelWindow window;
+    double nearest_depth = 0.0;
+  };
+
+  BinFront(const Scene& scene, const Camera& camera);
+
+  const std::vector<Part>& parts() const { return boxes_; }
+  /// The bin's first surface along the pixel's ray, if it may be before `depth`; else infinity.
+  double first_before(double depth, int column, int row);
+
+ private:
+  const Camera& camera_;
+  double depth_min_;
+  std::vector<Part> boxes_;
+  std::vector<Interval> inside_;
+};
+
+}  // namespace tubebin
