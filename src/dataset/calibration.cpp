@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "calibration_trials.hpp"
+#include "stop_note.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/random.hpp"
 #include "tubebin/dataset/cloud_files.hpp"
@@ -152,6 +153,7 @@ double BeforeAfter::gain_error() const {
 CalibrationReport calibrate_modeler(const CalibrationOptions& options, const ModelConfig& start,
                                     Progress::Style progress_style) try {
   const auto began = std::chrono::steady_clock::now();
+  const StopNote stop_note;
   CalibrationReport report;
   report.parameters = choose_parameters(options, start.modeling.method);
   report.before = setting_of(start, report.parameters);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "number_fields.hpp"
+#include "stop_note.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/dataset/manifest.hpp"
@@ -122,6 +123,7 @@ std::vector<std::vector<double>> CalibrationTrials::recalls(const std::vector<Se
 }
 
 void CalibrationTrials::find_missing(const std::vector<Trial>& missing) {
+  if (const int signal = StopNote::received(); signal != 0) throw CalibrationStopped{signal};
   if (missing.empty()) return;
   std::vector<std::size_t> jobs(missing.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) jobs[i] = i;

@@ -58,15 +58,15 @@ class Search {
     return counts;
   }
 
-  /// As many settings as halving's part of the budget lets begin.
+  /// As many settings beside the start, which is scored on all runs, as halving's part of the budget lets begin.
   std::size_t first_count(const std::vector<std::size_t>& rungs) const {
     double runs_a_setting = 0.0, survivors = 1.0;
     for (std::size_t k = 0; k < rungs.size(); ++k) {
       runs_a_setting += survivors * static_cast<double>(rungs[k] - (k > 0 ? rungs[k - 1] : 0));
       survivors /= kHalvingFactor;
     }
-    const double runs = kHalvingShare * options_.budget * static_cast<double>(options_.run_count);
-    return std::max<std::size_t>(1, static_cast<std::size_t>(runs / runs_a_setting));
+    const double runs = (kHalvingShare * options_.budget - 1.0) * static_cast<double>(options_.run_count);
+    return static_cast<std::size_t>(std::max(0.0, runs / runs_a_setting));
   }
 
   /// Latin hypercube (McKay, Beckman and Conover 1979): along each parameter, one setting in each of `count` slices.
@@ -83,7 +83,7 @@ class Search {
 
   void halve() {
     const std::vector<std::size_t> counts = rungs();
-    std::vector<Setting> settings = spread_settings(first_count(counts) - 1);
+    std::vector<Setting> settings = spread_settings(first_count(counts));
     settings.insert(settings.begin(), start_);
     std::vector<double> scores;
     for (const std::size_t run_count : counts) {
@@ -95,15 +95,14 @@ class Search {
     move_to(settings[static_cast<std::size_t>(best)], scores[static_cast<std::size_t>(best)]);
   }
 
-  /// In their order; the start, which is first, always stays.
+  /// The start, which is first, and the best third of the others.
   static std::vector<Setting> best_third(const std::vector<Setting>& settings, const std::vector<double>& scores) {
-    std::vector<std::size_t> order(settings.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin() + 1, order.end(),
-                     [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
-    order.resize((order.size() + kHalvingFactor - 1) / kHalvingFactor);
-    std::vector<Setting> best;
-    for (const std::size_t i : order) best.push_back(settings[i]);
+    std::vector<std::size_t> others(settings.size() - 1);
+    std::iota(others.begin(), others.end(), std::size_t{1});
+    std::ranges::stable_sort(others, std::greater(), [&](std::size_t i) { return scores[i]; });
+    others.resize((others.size() + kHalvingFactor - 1) / kHalvingFactor);
+    std::vector<Setting> best = {settings.front()};
+    for (const std::size_t i : others) best.push_back(settings[i]);
     return best;
   }
 
