@@ -1,6 +1,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "scene_check.hpp"
@@ -31,6 +32,26 @@ void check_identity(const SceneRecord& scene, const DatasetConfig& config, const
   if (scene.scene.tubes.size() != static_cast<std::size_t>(id.tubes))
     problems.push_back(fmt::format("scene.json has {} tubes", scene.scene.tubes.size()));
   if (scene.scene.bin != config.bin) problems.push_back("scene.json has another bin than config.yaml");
+}
+
+void check_kinds(const SceneRecord& scene, const DatasetConfig& config, Problems& problems) {
+  std::map<std::string, int> count_of;
+  for (const PlacedTube& tube : scene.scene.tubes) ++count_of[tube.tube.kind];
+  if (config.kinds.empty()) {
+    if (!count_of.empty() && !count_of.contains("")) problems.push_back("scene.json has kinds, config.yaml has none");
+    return;
+  }
+  for (std::size_t i = 0; i < config.kinds.size(); ++i) {
+    const std::string name = kind_name(config.kinds, i);
+    const int count = count_of[name];
+    count_of.erase(name);
+    if (count < config.kinds[i].count || (config.kinds[i].share == 0.0 && count > config.kinds[i].count))
+      problems.push_back(fmt::format("scene.json has {} tubes of kind {}, config.yaml asks for {}", count, name,
+                                     config.kinds[i].count));
+  }
+  for (const auto& [name, count] : count_of)
+    problems.push_back(
+        fmt::format("scene.json has {} tubes of kind '{}', which config.yaml does not have", count, name));
 }
 
 void check_colors(const SceneRecord& scene, Problems& problems) {
@@ -181,6 +202,7 @@ void check_content(const DatasetFiles& files, const DatasetConfig& config, const
   const auto cloud_parser = [](const std::string& bytes, const std::string& name) { return parse_cloud(bytes, name); };
   const SceneRecord scene = parse(parse_scene_json, "scene.json");
   check_identity(scene, config, id, record, problems);
+  check_kinds(scene, config, problems);
   check_colors(scene, problems);
   check_tubes_txt(parse(parse_tubes_txt, "tubes.txt"), scene, problems);
   check_contacts(scene, config, problems);

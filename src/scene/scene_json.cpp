@@ -62,20 +62,21 @@ OrderedJson tube_to_json(const PlacedTube& placed, std::size_t label, Color colo
   }
   for (const Cylinder& cylinder : tube.cylinders)
     cylinders.push_back({{"node_a", cylinder.node_a}, {"node_b", cylinder.node_b}, {"order", cylinder.order}});
-  return {{"id", label},
-          {"label", label},
-          {"color", color_to_json(color)},
-          {"radius", to_json(tube.radius)},
-          {"wall_thickness", to_json(tube.wall_thickness)},
-          {"mass", to_json(tube.mass)},
-          {"length", to_json(tube.length())},
-          {"nodes", std::move(nodes)},
-          {"cylinders", std::move(cylinders)},
-          {"pose", to_json(placed.world_from_tube)},
-          {"nodes_in_world", std::move(nodes_in_world)},
-          {"centerline", centerline_to_json(placed)},
-          {"visible_pixels", visible_pixels},
-          {"visible", visible_pixels > 0}};
+  OrderedJson json = {{"id", label}, {"label", label}};
+  if (!tube.kind.empty()) json["kind"] = tube.kind;
+  json.update({{"color", color_to_json(color)},
+               {"radius", to_json(tube.radius)},
+               {"wall_thickness", to_json(tube.wall_thickness)},
+               {"mass", to_json(tube.mass)},
+               {"length", to_json(tube.length())},
+               {"nodes", std::move(nodes)},
+               {"cylinders", std::move(cylinders)},
+               {"pose", to_json(placed.world_from_tube)},
+               {"nodes_in_world", std::move(nodes_in_world)},
+               {"centerline", centerline_to_json(placed)},
+               {"visible_pixels", visible_pixels},
+               {"visible", visible_pixels > 0}});
+  return json;
 }
 
 OrderedJson contact_to_json(const Contact& contact) {
@@ -187,6 +188,7 @@ PlacedTube read_tube(const JsonPlace& place, std::size_t label) {
       place.at(key).fail(fmt::format("{}: tubes stand in the order of their labels", label));
   PlacedTube placed;
   Tube& tube = placed.tube;
+  if (place.has("kind")) tube.kind = place.at("kind").text();
   tube.radius = place.at("radius").number();
   if (tube.radius <= 0.0) place.at("radius").fail("a number above 0");
   tube.wall_thickness = place.at("wall_thickness").number({0.0, tube.radius});

@@ -60,6 +60,8 @@ void check(const TubeOptions& options, const KeyPlaces& places, const std::strin
 }
 
 void describe(Fields& fields, TubeKind& kind) {
+  fields.text("name", kind.name,
+              "what scene.json calls tubes of this kind; empty: the shape and the kind's place in the list, as ring_3");
   fields.integer("count", kind.count, {0, 10000}, "", "of this kind in each scene");
   fields.number("share", kind.share, {0.0, 1e6}, "",
                 "weight of this kind where each of a scene's further tubes is drawn; shares need not sum to one");
@@ -73,6 +75,9 @@ void check(const std::vector<TubeKind>& kinds, const std::vector<int>& tube_coun
     check(static_cast<const TubeOptions&>(kinds[i]), places, prefix);
     if (kinds[i].count == 0 && kinds[i].share == 0.0)
       places.fail(prefix, "neither a count nor a share: no tube would be of this kind");
+    for (std::size_t j = 0; j < i; ++j)
+      if (kind_name(kinds, j) == kind_name(kinds, i))
+        places.fail(prefix + ".name", fmt::format("'{}' is kinds[{}]'s name already", kind_name(kinds, i), j));
   }
   const int fixed = total_count(kinds);
   for (const int count : tube_counts) {
@@ -91,13 +96,21 @@ std::vector<Tube> generate_tubes(int count, const TubeOptions& options, Random& 
   return tubes;
 }
 
+std::string kind_name(const std::vector<TubeKind>& kinds, std::size_t index) {
+  const TubeKind& kind = kinds[index];
+  return kind.name.empty() ? fmt::format("{}_{}", kind.shape.name(), index + 1) : kind.name;
+}
+
 std::vector<Tube> generate_mixed_tubes(int count, const std::vector<TubeKind>& kinds, Random& random) {
   std::vector<const TubeKind*> drawn;
   for (const TubeKind& kind : kinds) drawn.insert(drawn.end(), static_cast<std::size_t>(kind.count), &kind);
   while (static_cast<int>(drawn.size()) < count) drawn.push_back(draw_by_share(kinds, random));
   shuffle(drawn, random);
   std::vector<Tube> tubes;
-  for (const TubeKind* kind : drawn) tubes.push_back(generate_tube(*kind, random));
+  for (const TubeKind* kind : drawn) {
+    tubes.push_back(generate_tube(*kind, random));
+    tubes.back().kind = kind_name(kinds, static_cast<std::size_t>(kind - kinds.data()));
+  }
   return tubes;
 }
 

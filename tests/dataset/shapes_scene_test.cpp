@@ -51,6 +51,16 @@ TEST(ShapeScenes, AMixedBinHasAllKinds) {
   const SceneRecord record = make_one(folder, source_file("config/mixed.yaml"), "mixed", 6);
   const auto is_ball = [](const PlacedTube& placed) { return placed.tube.cylinders.empty(); };
   EXPECT_EQ(std::ranges::count_if(record.scene.tubes, is_ball), 1);
+  for (const PlacedTube& placed : record.scene.tubes) {
+    const Tube& tube = placed.tube;
+    const std::vector<int> degrees = tube.node_degrees();
+    const char* const kind = is_ball(placed)                       ? "ball"
+                             : tube.wall_thickness > 0.0           ? "pipe"
+                             : std::ranges::count(degrees, 3) == 1 ? "fork"
+                             : std::ranges::count(degrees, 1) == 0 ? "ring"
+                                                                   : "hose";
+    EXPECT_EQ(tube.kind, kind);
+  }
 }
 
 TEST(ShapeScenes, EachShapeAloneIsMadeAndVerified) {

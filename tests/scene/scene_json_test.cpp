@@ -87,7 +87,8 @@ TEST(SceneJson, ScannerEffectsAreThereWhereAnyIsOn) {
 }
 
 TEST(SceneJson, EverythingReadsBackBitByBit) {
-  const SceneRecord record = make_record(10);
+  SceneRecord record = make_record(10);
+  record.scene.tubes[3].tube.kind = "pipe";
   const SceneRecord back = parse(format_scene_json(record));
   EXPECT_EQ(back.id, record.id);
   EXPECT_EQ(back.seed, record.seed);
@@ -104,6 +105,7 @@ TEST(SceneJson, EverythingReadsBackBitByBit) {
     EXPECT_EQ(back.scene.tubes[k].tube.nodes, record.scene.tubes[k].tube.nodes);
     EXPECT_EQ(back.scene.tubes[k].tube.cylinders, record.scene.tubes[k].tube.cylinders);
     EXPECT_EQ(back.scene.tubes[k].tube.mass, record.scene.tubes[k].tube.mass);
+    EXPECT_EQ(back.scene.tubes[k].tube.kind, record.scene.tubes[k].tube.kind);
   }
   ASSERT_EQ(back.contacts.size(), 2U);
   EXPECT_EQ(back.contacts[1].depth, -1e-5);
@@ -173,6 +175,7 @@ TEST(SceneJson, AgreesWithItsSchema) {
 TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   const json schema = json::parse(read_file(TUBEBIN_SOURCE_DIR "/docs/scene.schema.json"));
   SceneRecord record = make_record(2);
+  for (PlacedTube& tube : record.scene.tubes) tube.tube.kind = "pipe";
   record.scene.scanner.effects.projector.enabled = true;  // else the scanner's effects are not there
   const json scene = json::parse(format_scene_json(record));
   const auto keys = [](const json& object) {

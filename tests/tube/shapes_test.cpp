@@ -284,6 +284,7 @@ std::vector<TubeKind> three_kinds() {
   std::vector<TubeKind> kinds(3);
   kinds[0].count = 2;
   kinds[0].radius = 0.01;
+  kinds[0].name = "few";
   kinds[1].share = 3.0;
   kinds[1].radius = 0.02;
   kinds[2].share = 1.0;
@@ -301,6 +302,8 @@ TEST(MixedKinds, HaveTheirCountsAndShares) {
     EXPECT_EQ(std::ranges::count(tubes, 0.01, &Tube::radius), 2);
     for (const Tube& tube : tubes) ++of_radius[tube.radius];
     first_is_fixed += tubes.front().radius == 0.01;
+    for (const Tube& tube : tubes)
+      EXPECT_EQ(tube.kind, tube.radius == 0.01 ? "few" : tube.radius == 0.02 ? "chain_2" : "chain_3");
   }
   // 3200 draws with probability 3/4: mean 2400, standard deviation 24.5.
   EXPECT_NEAR(of_radius[0.02], 2400, 100);
@@ -312,6 +315,9 @@ TEST(MixedKinds, RefuseNumbersThatCannotBe) {
   std::vector<TubeKind> kinds = three_kinds();
   EXPECT_NO_THROW(check(kinds, {2, 20}, places));
   EXPECT_THROW(check(kinds, {1}, places), ConfigError);
+  kinds[1].name = "few";
+  EXPECT_THROW(check(kinds, {2, 20}, places), ConfigError);
+  kinds[1].name = "";
   kinds[1].share = kinds[2].share = 0.0;
   EXPECT_THROW(check(kinds, {2}, places), ConfigError);  // kinds that are never made
   kinds.resize(1);

@@ -2,6 +2,7 @@
 /// Chains are the paper's tubes (Section 3); trees are branching tubes; a loop is a ring; a node alone is a sphere.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "tubebin/core/geometry.hpp"
@@ -24,6 +25,7 @@ struct Tube {
   double mass = 0.0;            ///< kilograms
   std::vector<Vec3> nodes;      ///< metres, in the tube's own frame
   std::vector<Cylinder> cylinders;
+  std::string kind = {};  ///< its kind's name in a mixed bin; empty where all tubes are of one kind
 
   /// Number of cylinders that meet at each node.
   std::vector<int> node_degrees() const;

@@ -21,6 +21,7 @@ void check(const TubeOptions& options, const KeyPlaces& places, const std::strin
 
 /// A kind of tube in a mixed bin.
 struct TubeKind : TubeOptions {
+  std::string name;    ///< in the ground truth; empty: kind_name makes one
   int count = 0;       ///< of this kind in each scene
   double share = 0.0;  ///< weight in the draw of each of the scene's further tubes
 };
@@ -32,7 +33,11 @@ void check(const std::vector<TubeKind>& kinds, const std::vector<int>& tube_coun
 /// Algorithm 1: `count` tubes, each in a frame with its first node at the origin or its middle there.
 std::vector<Tube> generate_tubes(int count, const TubeOptions& options, Random& random);
 
-/// `count` tubes of several kinds in random order: of each kind its own count, the others drawn by share.
+/// The name of kinds[index]: its own, or that of its shape and its place in the list, as "ring_3".
+std::string kind_name(const std::vector<TubeKind>& kinds, std::size_t index);
+
+/// `count` tubes of several kinds in random order, each with its kind's name: of each kind its own count, the others
+/// drawn by share.
 std::vector<Tube> generate_mixed_tubes(int count, const std::vector<TubeKind>& kinds, Random& random);
 
 }  // namespace tubebin
