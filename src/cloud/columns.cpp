@@ -128,7 +128,7 @@ double scalar_at(const char* bytes, ScalarType type, bool swapped) {
 std::optional<Role> role_of(std::string_view field_name) {
   constexpr std::pair<std::string_view, Role> kRoles[] = {
       {"x", kX},     {"y", kY},         {"z", kZ},       {"rgb", kPackedColor}, {"rgba", kPackedColor},
-      {"red", kRed}, {"green", kGreen}, {"blue", kBlue}, {"label", kLabel}};
+      {"red", kRed}, {"green", kGreen}, {"blue", kBlue}, {"label", kLabel}, {"source", kSource}};
   for (const auto& [name, role] : kRoles)
     if (name == field_name) return role;
   return std::nullopt;
@@ -152,6 +152,11 @@ void CloudColumns::decode(std::size_t count, double scale, const std::string& na
     cloud.labels.resize(count);
     for_each_value(*columns_[kLabel], count,
                    [&](std::size_t i, auto value) { cloud.labels[i] = to_uint32(value, "label", i, name); });
+  }
+  if (has(kSource)) {
+    cloud.sources.resize(count);
+    for_each_value(*columns_[kSource], count,
+                   [&](std::size_t i, auto value) { cloud.sources[i] = to_uint32(value, "source", i, name); });
   }
 }
 

@@ -29,7 +29,7 @@ struct Column {
 double scalar_at(const char* bytes, ScalarType type, bool swapped);
 
 /// What a field means to a cloud.
-enum Role : std::uint8_t { kX, kY, kZ, kPackedColor, kRed, kGreen, kBlue, kLabel, kRoleCount };
+enum Role : std::uint8_t { kX, kY, kZ, kPackedColor, kRed, kGreen, kBlue, kLabel, kSource, kRoleCount };
 std::optional<Role> role_of(std::string_view field_name);
 
 class CloudColumns {

@@ -23,6 +23,7 @@ std::string format_header(const Cloud& cloud, CloudFormat format) {
   // Text keeps a colour as a whole number (as PCL writes it); as a float its digits would be in danger.
   if (!cloud.colors.empty()) add(" rgb", format == CloudFormat::pcd_ascii ? " U" : " F");
   if (!cloud.labels.empty()) add(" label", " U");
+  if (!cloud.sources.empty()) add(" source", " U");
   const Vec3 t = cloud.world_from_sensor.translation();
   const Quat q(cloud.world_from_sensor.linear());
   const char* data = format == CloudFormat::pcd_ascii        ? "ascii"
@@ -37,7 +38,7 @@ std::string format_header(const Cloud& cloud, CloudFormat format) {
 }
 
 std::size_t point_size(const Cloud& cloud) {
-  return kScalarSize * (3 + (cloud.colors.empty() ? 0 : 1) + (cloud.labels.empty() ? 0 : 1));
+  return kScalarSize * (3 + (cloud.colors.empty() ? 0 : 1) + (cloud.labels.empty() ? 0 : 1) + (cloud.sources.empty() ? 0 : 1));
 }
 
 /// Point by point.
@@ -54,6 +55,7 @@ void append_binary(std::string& out, const Cloud& cloud) {
     at += sizeof(Point);
     if (!cloud.colors.empty()) put(cloud.colors[i]);
     if (!cloud.labels.empty()) put(cloud.labels[i]);
+    if (!cloud.sources.empty()) put(cloud.sources[i]);
   }
 }
 
@@ -69,6 +71,7 @@ std::string fields_one_by_one(const Cloud& cloud) {
     for (const Point& point : cloud.points) put(&point[axis]);
   for (const Color& color : cloud.colors) put(&color);
   for (const Label& label : cloud.labels) put(&label);
+  for (const std::uint32_t& source : cloud.sources) put(&source);
   return out;
 }
 
@@ -117,6 +120,7 @@ void append_ascii(std::string& out, const Cloud& cloud) {
     fmt::format_to(end, "{} {} {}", p.x(), p.y(), p.z());
     if (!cloud.colors.empty()) fmt::format_to(end, " {}", cloud.colors[i]);
     if (!cloud.labels.empty()) fmt::format_to(end, " {}", cloud.labels[i]);
+    if (!cloud.sources.empty()) fmt::format_to(end, " {}", cloud.sources[i]);
     out += '\n';
   }
 }

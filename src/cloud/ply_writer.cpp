@@ -28,6 +28,7 @@ std::string format_header(const Cloud& cloud) {
       cloud.size());
   if (!cloud.colors.empty()) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   if (!cloud.labels.empty()) header += "property uint label\n";
+  if (!cloud.sources.empty()) header += "property uint source\n";
   return header + kCameraProperties + "end_header\n";
 }
 
@@ -51,7 +52,7 @@ void append_camera(std::string& out, const Cloud& cloud) {
 }  // namespace
 
 std::string format_ply(const Cloud& cloud) {
-  constexpr std::size_t kLargestVertex = 19;
+  constexpr std::size_t kLargestVertex = 23;
   constexpr std::size_t kCamera = 84;
   std::string out = format_header(cloud);
   out.reserve(out.size() + cloud.size() * kLargestVertex + kCamera);
@@ -60,6 +61,7 @@ std::string format_ply(const Cloud& cloud) {
     if (!cloud.colors.empty())
       for (const int shift : {16, 8, 0}) out.push_back(static_cast<char>(cloud.colors[i] >> shift & 0xFF));
     if (!cloud.labels.empty()) append(out, cloud.labels[i]);
+    if (!cloud.sources.empty()) append(out, cloud.sources[i]);
   }
   append_camera(out, cloud);
   return out;

@@ -52,6 +52,25 @@ int parse_count(const std::string& text, const std::string& whole) {
   return value;
 }
 
+void describe_with_effects(Fields& fields, Scanner& scanner) {
+  describe(fields, scanner);
+  fields.group("effects", "what a real scanner adds (docs/scanner_effects.md); all off: exact rays",
+               [&](Fields& effects) { describe(effects, scanner.effects); });
+}
+
+/// What an element of the list does not say is as in `scanner`, which an included file may have set.
+void describe_scanners(Fields& fields, DatasetConfig& config) {
+  Scanner fresh = config.scanner;
+  fields.list(
+      "scanners", "several scanners or poses, merged into one cloud, instead of `scanner`", config.scanners.size(),
+      [&](std::size_t size) { config.scanners.assign(size, config.scanner); },
+      [&](Fields& inner, std::size_t i) {
+        describe_with_effects(inner, i < config.scanners.size() ? config.scanners[i] : fresh);
+      });
+  if (config.scanners.empty())
+    fields.group("scanner", "the virtual 3D scanner", [&](Fields& inner) { describe_with_effects(inner, config.scanner); });
+}
+
 }  // namespace
 
 const char* tool_version() { return TUBEBIN_VERSION; }
@@ -75,11 +94,7 @@ void describe(Fields& fields, DatasetConfig& config) {
   fields.group("bin", "inner size of the bin", [&](Fields& inner) { describe(inner, config.bin); });
   fields.group("physics", "the drop and the checks of its result",
                [&](Fields& inner) { describe(inner, config.physics); });
-  fields.group("scanner", "the virtual 3D scanner", [&](Fields& inner) {
-    describe(inner, config.scanner);
-    inner.group("effects", "what a real scanner adds (docs/scanner_effects.md); all off: exact rays",
-                [&](Fields& effects) { describe(effects, config.scanner.effects); });
-  });
+  describe_scanners(fields, config);
   fields.group("output", "what is written for each scene", [&](Fields& inner) {
     inner.choice("format", config.output.format, {"pcd_binary", "pcd_compressed", "pcd_ascii", "ply_binary"},
                  "file format of the cloud");
@@ -103,7 +118,9 @@ void check(const DatasetConfig& config, const KeyPlaces& places) {
   if (config.kinds.empty()) check(config.tube, places, "tube");
   check(config.kinds, config.tubes, places);
   check(config.physics, places, "physics");
-  check(config.scanner, places, "scanner");
+  if (config.scanners.empty()) check(config.scanner, places, "scanner");
+  for (std::size_t i = 0; i < config.scanners.size(); ++i)
+    check(config.scanners[i], places, fmt::format("scanners[{}]", i));
 }
 
 DatasetConfig load_config(const std::string& path) {
@@ -127,7 +144,9 @@ std::string document_shapes() {
       "The tables above have the keys of `shape: chain`. Other shapes have the keys below instead of `length` to\n"
       "`bend_angle_max_deg`; a key of another shape is an error. [shapes.md](shapes.md) says how each is made.\n\n"
       "`kinds` makes several kinds of tubes at once. It stands instead of `tube`, and each of its elements has the keys\n"
-      "of `tube` beside `count` and `share`.\n";
+      "of `tube` beside `name`, `count` and `share`.\n\n"
+      "`scanners` makes one cloud of several scanners. It stands instead of `scanner`, and each of its elements has the\n"
+      "keys of `scanner`; what it leaves out is as in the `scanner` of an included file.\n";
   for (const std::string& name : shape_names()) {
     TubeOptions options;
     options.shape = ShapeChoice(name);

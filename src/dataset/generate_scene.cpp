@@ -70,15 +70,19 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
     return result;
   }
 
-  const Scene scene{.bin = config.bin, .scanner = config.scanner, .tubes = std::move(drop.tubes)};
-  Scan scanned = scan(scene, attempt_seed(config, id, attempt));
+  const std::vector<Scanner> scanners = config.all_scanners();
+  const Scene scene{.bin = config.bin,
+                    .scanner = scanners.front(),
+                    .tubes = std::move(drop.tubes),
+                    .further_scanners = {scanners.begin() + 1, scanners.end()}};
+  MergedScan scanned = scan_from_all(scene, attempt_seed(config, id, attempt));
   clock.end_stage("scan");
   if (!has_point(scanned.cloud)) {
     result.failure = "unseen";
     result.failure_detail = fmt::format(
         "the cloud has no point: from scanner.position, with scanner.rotation_deg, no surface lies between range_min "
         "{} m and range_max {} m in the image",
-        config.scanner.range_min, config.scanner.range_max);
+        scanners.front().range_min, scanners.front().range_max);
     return result;
   }
   PileRelations relations = relate_pile(scene);
@@ -91,9 +95,10 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
                            .colors = label_colors(scene.tubes.size()),
                            .tube_pixels = std::move(scanned.tube_pixels),
                            .contacts = std::move(drop.contacts),
+                           .further_windows = std::move(scanned.further_windows),
                            .relations = std::move(relations)};
   result.content.cloud = std::move(scanned.cloud);
-  if (config.output.clean_cloud) result.content.clean_cloud = scan_exactly(scene).cloud;
+  if (config.output.clean_cloud) result.content.clean_cloud = scan_exactly_from_all(scene).cloud;
 
   if (config.output.preview) {
     result.content.images["preview.png"] = png(render_preview(scene, kPreviewWidth, kPreviewHeight));

@@ -99,6 +99,7 @@ Cloud filtered_cloud(const Cloud& input, const ModelingResult& result) {
     cloud.points.push_back(input.points[i]);
     if (!input.colors.empty()) cloud.colors.push_back(input.colors[i]);
     if (!input.labels.empty()) cloud.labels.push_back(input.labels[i]);
+    if (!input.sources.empty()) cloud.sources.push_back(input.sources[i]);
   }
   return cloud;
 }

@@ -79,15 +79,25 @@ std::vector<BodySurface> surfaces_of(const Scene& scene) {
   return surfaces;
 }
 
+void check_sources(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
+  const std::size_t source_count = scene.scene.source_count();
+  if (cloud.sources.size() != (source_count > 1 ? cloud.size() : 0))
+    problems.push_back(fmt::format("{} of the cloud's {} points say which of {} scanners saw them",
+                                   cloud.sources.size(), cloud.size(), source_count));
+  else if (std::ranges::any_of(cloud.sources, [&](std::uint32_t source) { return source >= source_count; }))
+    problems.push_back(fmt::format("the cloud has points of other sources than its {} scanners", source_count));
+}
+
 void check_cloud_layout(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
   const bool is_organized =
-      scene.scene.scanner.region != ScanRegion::tubes && scene.window.width * scene.window.height > 0;
+      scene.scene.further_scanners.empty() && scene.scene.scanner.region != ScanRegion::tubes && scene.window.width * scene.window.height > 0;
   if (is_organized && (cloud.width != static_cast<std::uint32_t>(scene.window.width) ||
                        cloud.height != static_cast<std::uint32_t>(scene.window.height)))
     problems.push_back(fmt::format("the cloud has {} x {} points, the window of scene.json {} x {}", cloud.width,
                                    cloud.height, scene.window.width, scene.window.height));
   if (cloud.colors.size() != cloud.size() || cloud.labels.size() != cloud.size())
     problems.push_back("the cloud has no colour or no label for each point");
+  check_sources(cloud, scene, problems);
 }
 
 /// Labels and colours; that points lie on their surfaces where `exact` says so. Returns the tubes' pixels.
@@ -125,7 +135,8 @@ std::size_t count_differences(const Cloud& cloud, const Cloud& expected) {
     const Point &found = cloud.points[i], &wanted = expected.points[i];
     const bool same_place =
         is_finite(wanted) ? (found - wanted).norm() <= static_cast<float>(kSurfaceTolerance) : !is_finite(found);
-    differences += !same_place || cloud.labels[i] != expected.labels[i];
+    differences += !same_place || cloud.labels[i] != expected.labels[i] ||
+                   (!expected.sources.empty() && cloud.sources[i] != expected.sources[i]);
   }
   return differences;
 }
@@ -133,13 +144,14 @@ std::size_t count_differences(const Cloud& cloud, const Cloud& expected) {
 /// A cloud with effects is off the surfaces by design, by its seed's noise. So it is compared with what the seed gives,
 /// and the surfaces with its noise-free twin.
 void check_effects(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
-  if (const std::size_t differing = count_differences(cloud, scan(scene.scene, scene.seed).cloud))
+  if (const std::size_t differing = count_differences(cloud, scan_from_all(scene.scene, scene.seed).cloud))
     problems.push_back(fmt::format("{} points are not what the scanner's effects make of the scene", differing));
-  check_points(scan_exactly(scene.scene).cloud, scene, true, problems);
+  check_points(scan_exactly_from_all(scene.scene).cloud, scene, true, problems);
 }
 
 void check_cloud(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
-  const bool has_effects = scene.scene.scanner.effects.any();
+  bool has_effects = scene.scene.scanner.effects.any();
+  for (const Scanner& scanner : scene.scene.further_scanners) has_effects |= scanner.effects.any();
   const std::vector<std::size_t> pixels = check_points(cloud, scene, !has_effects, problems);
   if (pixels != scene.tube_pixels)
     problems.push_back(fmt::format("the cloud shows [{}] pixels of the tubes, scene.json says [{}]",
@@ -151,7 +163,7 @@ void check_clean_cloud(const Cloud& clean, const SceneRecord& scene, Problems& p
   check_cloud_layout(clean, scene, problems);
   if (!problems.empty()) return;
   check_points(clean, scene, true, problems);
-  if (const std::size_t differing = count_differences(clean, scan_exactly(scene.scene).cloud))
+  if (const std::size_t differing = count_differences(clean, scan_exactly_from_all(scene.scene).cloud))
     problems.push_back(fmt::format("{} points of cloud_clean are not the scene as exact rays see it", differing));
 }
 

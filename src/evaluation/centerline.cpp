@@ -89,16 +89,19 @@ Centerline centerline(const PlacedTube& tube) {
 }
 
 std::vector<CenterlineSamples> sample_centerlines(const Scene& scene) {
-  const Vec3& scanner = scene.scanner.position;
+  std::vector<Vec3> scanners = {scene.scanner.position};
+  for (const Scanner& scanner : scene.further_scanners) scanners.push_back(scanner.position);
   std::vector<Centerline> lines;
   for (const PlacedTube& tube : scene.tubes) lines.push_back(centerline(tube));
   std::vector<CenterlineSamples> result(lines.size());
   for (std::size_t k = 0; k < lines.size(); ++k) {
     for (const CenterlinePiece& piece : lines[k]) {
       for (const Vec3& point : sample_piece(piece)) {
-        bool visible = true;
-        for (std::size_t other = 0; other < lines.size() && visible; ++other)
-          visible = other == k || !occludes(lines[other], scene.tubes[other].tube.radius, scanner, point);
+        const bool visible = std::ranges::any_of(scanners, [&](const Vec3& scanner) {
+          for (std::size_t other = 0; other < lines.size(); ++other)
+            if (other != k && occludes(lines[other], scene.tubes[other].tube.radius, scanner, point)) return false;
+          return true;
+        });
         result[k].points.push_back(point);
         result[k].visible.push_back(visible ? 1 : 0);
       }

@@ -62,6 +62,8 @@ void add_cloud(const Cloud& cloud, Files& arrays) {
   }
   arrays["points.npy"] = npy(points, image_shape(cloud) + 3);
   arrays["labels.npy"] = npy(labels, image_shape(cloud));
+  if (!cloud.sources.empty())
+    arrays["sources.npy"] = npy(std::vector<std::int32_t>(cloud.sources.begin(), cloud.sources.end()), {cloud.size()});
 }
 
 void add_scanner(const SceneRecord& record, Files& arrays) {
@@ -85,8 +87,8 @@ void add_tubes(const SceneToExport& scene, Files& arrays) {
   std::vector<double> poses, radii, nodes;
   std::vector<std::int64_t> tube_of_node, cylinders, visible, amodal;
   std::int64_t first_node = 0;
-  const auto views = view_tubes_alone(scene.record.scene);
-  for (std::size_t k = 0; k < views.size(); ++k) {
+  const PileView view = view_pile(scene.record.scene);
+  for (std::size_t k = 0; k < view.amodal_pixels.size(); ++k) {
     const PlacedTube& placed = scene.record.scene.tubes[k];
     append_rows(poses, placed.world_from_tube.matrix());
     radii.push_back(placed.tube.radius);
@@ -98,7 +100,7 @@ void add_tubes(const SceneToExport& scene, Files& arrays) {
       cylinders.insert(cylinders.end(), {first_node + cylinder.node_a, first_node + cylinder.node_b});
     first_node += static_cast<std::int64_t>(placed.tube.nodes.size());
     visible.push_back(static_cast<std::int64_t>(scene.record.tube_pixels[k]));
-    amodal.push_back(static_cast<std::int64_t>(views[k].size()));
+    amodal.push_back(static_cast<std::int64_t>(view.amodal_pixels[k]));
   }
   arrays["world_from_tube.npy"] = npy(poses, {radii.size(), 4, 4});
   arrays["radius.npy"] = npy(radii, {radii.size()});

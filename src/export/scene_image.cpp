@@ -45,7 +45,7 @@ SceneImage::SceneImage(const SceneToExport& scene)
   check_consistent(scene);
   const Cloud& cloud = scene.cloud;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_finite(cloud.points[i])) continue;
+    if (!is_finite(cloud.points[i]) || (!cloud.sources.empty() && cloud.sources[i] != 0)) continue;
     const Pixel pixel =
         cloud.organized() ? pixel_of_organized(i, scene.record.window) : pixel_on_ray(cloud.points[i], camera_);
     if (pixel.column >= 0 && pixel.column < points_.width && pixel.row >= 0 && pixel.row < points_.height)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <tuple>
 
 #include "scan/bin_front.hpp"
 #include "scan/solid_outline.hpp"
@@ -271,9 +272,7 @@ PileView count_pixels(const Scene& scene) {
   return pile;
 }
 
-}  // namespace
-
-PileView view_pile(const Scene& scene) {
+PileView view_from_one(const Scene& scene) {
   const Camera camera(scene.scanner);
   const std::vector<SceneSolids> tubes = solids_by_tube(scene, scene_solids(scene));
   if (!is_plain(tubes, camera, scene.scanner)) return count_pixels(scene);
@@ -284,6 +283,27 @@ PileView view_pile(const Scene& scene) {
     counter.count(std::span(runs).subspan(begin, end - begin));
   }
   return counter.result();
+}
+
+void add(const PileView& view, PileView& sum) {
+  for (std::size_t k = 0; k < view.amodal_pixels.size(); ++k) sum.amodal_pixels[k] += view.amodal_pixels[k];
+  for (const Occlusion& occlusion : view.occlusions) {
+    const auto place = std::ranges::lower_bound(sum.occlusions, occlusion, [](const auto& a, const auto& b) {
+      return std::tie(a.behind, a.front) < std::tie(b.behind, b.front);
+    });
+    if (place != sum.occlusions.end() && place->behind == occlusion.behind && place->front == occlusion.front)
+      place->pixels += occlusion.pixels;
+    else sum.occlusions.insert(place, occlusion);
+  }
+}
+
+}  // namespace
+
+PileView view_pile(const Scene& scene) {
+  if (scene.further_scanners.empty()) return view_from_one(scene);
+  PileView sum = view_from_one(seen_from(scene, 0));
+  for (std::size_t source = 1; source < scene.source_count(); ++source) add(view_from_one(seen_from(scene, source)), sum);
+  return sum;
 }
 
 }  // namespace tubebin

@@ -12,6 +12,12 @@ std::vector<Box> bin_boxes(const Bin& bin) {
           Box(Vec3(-x, -y - wall, 0.0), Vec3(x, -y, bin.height)), Box(Vec3(-x, y, 0.0), Vec3(x, y + wall, bin.height))};
 }
 
+Scene seen_from(const Scene& scene, std::size_t source) {
+  return {.bin = scene.bin,
+          .scanner = source == 0 ? scene.scanner : scene.further_scanners.at(source - 1),
+          .tubes = scene.tubes};
+}
+
 Pose Scanner::world_from_scanner() const {
   Eigen::Matrix3d looking_down;  // columns: image right, image down, view, in world axes
   looking_down << 1, 0, 0, 0, -1, 0, 0, 0, -1;

@@ -43,6 +43,13 @@ OrderedJson scanner_to_json(Scanner scanner, const PixelWindow& window) {
   return json;
 }
 
+OrderedJson further_scanners_to_json(const SceneRecord& record) {
+  OrderedJson scanners = OrderedJson::array();
+  for (std::size_t k = 0; k < record.further_windows.size(); ++k)
+    scanners.push_back(scanner_to_json(record.scene.further_scanners[k], record.further_windows[k]));
+  return scanners;
+}
+
 OrderedJson centerline_to_json(const PlacedTube& placed) {
   OrderedJson paths = OrderedJson::array();
   for (const std::vector<int>& path : centerline_paths(placed.tube)) {
@@ -276,6 +283,9 @@ void check_consistent(const SceneRecord& record) {
   if (record.colors.size() != tubes + 1 || record.tube_pixels.size() != tubes)
     throw std::invalid_argument(fmt::format("scene {} of {} tubes with {} colours and {} pixel counts", record.id,
                                             tubes, record.colors.size(), record.tube_pixels.size()));
+  if (record.further_windows.size() != record.scene.further_scanners.size())
+    throw std::invalid_argument(fmt::format("scene {} of {} further scanners with {} windows", record.id,
+                                            record.scene.further_scanners.size(), record.further_windows.size()));
   if (record.relations && record.relations->amodal_pixels.size() != tubes)
     throw std::invalid_argument(fmt::format("scene {} of {} tubes with {} amodal pixel counts", record.id, tubes,
                                             record.relations->amodal_pixels.size()));
@@ -295,6 +305,7 @@ std::string format_scene_json(const SceneRecord& record) {
                       {"scanner", scanner_to_json(record.scene.scanner, record.window)},
                       {"tubes", OrderedJson::array()},
                       {"contacts", OrderedJson::array()}};
+  if (!record.further_windows.empty()) json["further_scanners"] = further_scanners_to_json(record);
   for (std::size_t k = 0; k < record.scene.tubes.size(); ++k)
     json["tubes"].push_back(tube_to_json(record.scene.tubes[k], k + 1, record.colors[k + 1], record.tube_pixels[k]));
   for (const Contact& contact : record.contacts) json["contacts"].push_back(contact_to_json(contact));
@@ -313,6 +324,11 @@ SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
   record.colors.push_back(read_color(root.at("bin").at("color")));
   record.scene.scanner = read_scanner(root.at("scanner"));
   record.window = read_window(root.at("scanner").at("window"), record.scene.scanner);
+  if (root.has("further_scanners"))
+    for (const JsonPlace& scanner : root.at("further_scanners").elements()) {
+      record.scene.further_scanners.push_back(read_scanner(scanner));
+      record.further_windows.push_back(read_window(scanner.at("window"), record.scene.further_scanners.back()));
+    }
   for (const JsonPlace& tube : root.at("tubes").elements()) {
     record.scene.tubes.push_back(read_tube(tube, record.scene.tubes.size() + 1));
     record.colors.push_back(read_color(tube.at("color")));

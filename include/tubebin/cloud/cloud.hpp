@@ -17,7 +17,7 @@ using Label = std::uint32_t;
 /// The colour of a point without a tube; never a tube's or the bin's.
 constexpr Color kNullColor = 0x000000;
 
-/// Points in the world frame (metres), row by row where organized; colours and labels are empty or one a point.
+/// Points in the world frame (metres), row by row where organized; colours, labels and sources are empty or one a point.
 /// In an organized cloud a pixel that hit nothing has NaN coordinates, null colour and label 0.
 struct Cloud {
   std::uint32_t width = 0;
@@ -25,7 +25,8 @@ struct Cloud {
   std::vector<Point> points;
   std::vector<Color> colors;
   std::vector<Label> labels;
-  Pose world_from_sensor = Pose::Identity();  ///< PCD's VIEWPOINT
+  std::vector<std::uint32_t> sources;  ///< which of several scanners saw each point, from 0
+  Pose world_from_sensor = Pose::Identity();  ///< PCD's VIEWPOINT; that of source 0
 
   std::size_t size() const { return points.size(); }
   bool organized() const { return height > 1; }

@@ -14,8 +14,8 @@ enum class CloudFormat { pcd_binary, pcd_compressed, pcd_ascii, ply_binary };
 /// ".pcd" or ".ply".
 const char* extension(CloudFormat format);
 
-/// Writes fields x y z (float32, metres), then rgb (packed float; red green blue in PLY) and label (uint32)
-/// where the cloud has them. PLY keeps rows, columns and sensor pose in a `camera` element, as PCL does. The
+/// Writes fields x y z (float32, metres), then rgb (packed float; red green blue in PLY), label and source
+/// (uint32) where the cloud has them. PLY keeps rows, columns and sensor pose in a `camera` element, as PCL does. The
 /// file is complete and synced under a temporary name before it takes its own. Throws IoError.
 void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format);
 
@@ -23,7 +23,7 @@ void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format
 std::string format_cloud(const Cloud& cloud, CloudFormat format);
 
 /// Reads a PCD or PLY file, told apart by their first bytes: coordinates of any type, organized or not,
-/// colours as rgb, rgba or red green blue, labels as whole numbers of any type; other fields, faces and the
+/// colours as rgb, rgba or red green blue, labels and sources as whole numbers of any type; other fields, faces and the
 /// like are skipped. `scale` multiplies the coordinates (0.001 for files in millimetres). Throws IoError,
 /// naming the file and the cause, on anything that is no complete cloud with x y z.
 Cloud read_cloud(const std::string& path, double scale = 1.0);

@@ -34,7 +34,11 @@ struct DatasetConfig {
   Bin bin;
   PhysicsOptions physics;
   Scanner scanner;
+  std::vector<Scanner> scanners;  ///< several, merged into one cloud, instead of `scanner`
   OutputOptions output;
+
+  /// The scanners that look at each scene: `scanners`, or `scanner` alone.
+  std::vector<Scanner> all_scanners() const { return scanners.empty() ? std::vector{scanner} : scanners; }
 };
 
 void describe(Fields& fields, DatasetConfig& config);

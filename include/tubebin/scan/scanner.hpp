@@ -17,6 +17,16 @@ struct Scan {
 /// decides all randomness, the same for a pixel in every region.
 Scan scan(const Scene& scene, std::uint64_t seed = 0);
 
+/// What all of the scene's scanners see, each with its own effects and noise. Of one scanner it is scan(). Of several it is
+/// one unorganized cloud: the points of source 0, then those of source 1 and so on, each with its source; `tube_pixels` are
+/// those of all, `window` is source 0's. Source 0's points are those that it would have alone.
+struct MergedScan : Scan {
+  std::vector<PixelWindow> further_windows;
+};
+MergedScan scan_from_all(const Scene& scene, std::uint64_t seed = 0);
+/// Its noise-free twin.
+MergedScan scan_exactly_from_all(Scene scene);
+
 /// The noise-free twin of scan(): the scene as exact rays see it. Organized clouds agree pixel by pixel.
 Scan scan_exactly(Scene scene);
 

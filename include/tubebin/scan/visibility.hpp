@@ -29,7 +29,8 @@ struct PileView {
   friend bool operator==(const PileView&, const PileView&) = default;
 };
 
-/// The counts of both functions above, without their pixels and several times as fast.
+/// The counts of both functions above, without their pixels and several times as fast; of several scanners all
+/// together.
 PileView view_pile(const Scene& scene);
 
 }  // namespace tubebin

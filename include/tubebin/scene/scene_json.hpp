@@ -17,10 +17,11 @@ struct SceneRecord {
   std::string id;          ///< "A10/007"
   std::uint64_t seed = 0;  ///< of the attempt that succeeded
   Scene scene;
-  PixelWindow window;                    ///< of the organized cloud in the full image
+  PixelWindow window;                    ///< of the organized cloud in the full image, or of source 0's pixels
   std::vector<Color> colors;             ///< of label 0 (bin) and every tube
-  std::vector<std::size_t> tube_pixels;  ///< visible pixels of tube k at [k - 1]
+  std::vector<std::size_t> tube_pixels;  ///< visible pixels of tube k at [k - 1], all sources together
   std::vector<Contact> contacts;
+  std::vector<PixelWindow> further_windows = {};  ///< of the scene's further scanners
   std::optional<PileRelations> relations;  ///< nothing in files of versions that did not write them
 };
 

@@ -1,0 +1,51 @@
+// One cloud of several scanners.
+#include "tubebin/core/random.hpp"
+#include "tubebin/scan/scanner.hpp"
+
+namespace tubebin {
+namespace {
+
+/// Pixels without a point go, since the cloud is no image.
+void append_points(const Cloud& from, std::uint32_t source, Cloud& to) {
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (!is_finite(from.points[i])) continue;
+    to.points.push_back(from.points[i]);
+    to.colors.push_back(from.colors[i]);
+    to.labels.push_back(from.labels[i]);
+    to.sources.push_back(source);
+  }
+  to.width = static_cast<std::uint32_t>(to.size());
+}
+
+/// Each scanner errs in its own way; source 0 as it would alone.
+std::uint64_t source_seed(std::uint64_t seed, std::uint32_t source) {
+  return source == 0 ? seed : derive_seed({seed, source});
+}
+
+}  // namespace
+
+MergedScan scan_from_all(const Scene& scene, std::uint64_t seed) {
+  if (scene.further_scanners.empty()) return {scan(scene, seed), {}};
+  MergedScan merged;
+  merged.tube_pixels.assign(scene.tubes.size(), 0);
+  for (std::uint32_t source = 0; source < scene.source_count(); ++source) {
+    const Scan part = scan(seen_from(scene, source), source_seed(seed, source));
+    append_points(part.cloud, source, merged.cloud);
+    for (std::size_t k = 0; k < part.tube_pixels.size(); ++k) merged.tube_pixels[k] += part.tube_pixels[k];
+    if (source == 0) {
+      merged.window = part.window;
+      merged.cloud.world_from_sensor = part.cloud.world_from_sensor;
+    } else {
+      merged.further_windows.push_back(part.window);
+    }
+  }
+  return merged;
+}
+
+MergedScan scan_exactly_from_all(Scene scene) {
+  scene.scanner.effects = {};
+  for (Scanner& scanner : scene.further_scanners) scanner.effects = {};
+  return scan_from_all(scene);
+}
+
+}  // namespace tubebin
