@@ -16,17 +16,24 @@ double distance_from_bounds(const Vector& beyond) {
 
 }  // namespace
 
-BodySurface::BodySurface(const PlacedTube& placed)
-    : radius_(placed.tube.radius),
-      bore_radius_(placed.tube.wall_thickness > 0.0 ? placed.tube.radius - placed.tube.wall_thickness : 0.0) {
+BodySurface::BodySurface(const PlacedTube& placed) {
+  const double wall = placed.tube.wall_thickness;
+  const auto bore_radius = [&](double radius) { return wall > 0.0 ? radius - wall : 0.0; };
   for (const Cylinder& cylinder : placed.tube.cylinders) {
     const Vec3 a = placed.node_in_world(cylinder.node_a);
     const Vec3 b = placed.node_in_world(cylinder.node_b);
-    cylinders_.push_back({.center = (a + b) / 2.0, .axis = (b - a).normalized(), .half_length = (b - a).norm() / 2.0});
+    const double radius = placed.tube.radius_of(cylinder);
+    cylinders_.push_back({.center = (a + b) / 2.0,
+                          .axis = (b - a).normalized(),
+                          .half_length = (b - a).norm() / 2.0,
+                          .radius = radius,
+                          .bore_radius = bore_radius(radius)});
   }
   const std::vector<int> degrees = placed.tube.node_degrees();
+  const std::vector<double> radii = placed.tube.node_radii();
   for (std::size_t node = 0; node < degrees.size(); ++node)
-    if (degrees[node] != 1) sphere_centers_.push_back(placed.node_in_world(static_cast<int>(node)));
+    if (degrees[node] != 1)
+      spheres_.push_back({placed.node_in_world(static_cast<int>(node)), radii[node], bore_radius(radii[node])});
 }
 
 double BodySurface::distance(const Vec3& point) const {
@@ -36,14 +43,15 @@ double BodySurface::distance(const Vec3& point) const {
     const double along = from_center.dot(cylinder.axis);
     const double radial = (from_center - along * cylinder.axis).norm();
     // A pipe's section is a rectangle from bore to outside; without a bore only its outer side counts.
-    const double middle = bore_radius_ > 0.0 ? (radius_ + bore_radius_) / 2.0 : 0.0;
-    nearest = std::min(nearest, distance_from_bounds(Eigen::Vector2d(std::abs(radial - middle) - (radius_ - middle),
-                                                                     std::abs(along) - cylinder.half_length)));
+    const double middle = cylinder.bore_radius > 0.0 ? (cylinder.radius + cylinder.bore_radius) / 2.0 : 0.0;
+    nearest =
+        std::min(nearest, distance_from_bounds(Eigen::Vector2d(std::abs(radial - middle) - (cylinder.radius - middle),
+                                                               std::abs(along) - cylinder.half_length)));
   }
-  for (const Vec3& center : sphere_centers_) {
-    const double from_center = (point - center).norm();
-    nearest = std::min(nearest, std::abs(from_center - radius_));
-    if (bore_radius_ > 0.0) nearest = std::min(nearest, std::abs(from_center - bore_radius_));
+  for (const Sphere& sphere : spheres_) {
+    const double from_center = (point - sphere.center).norm();
+    nearest = std::min(nearest, std::abs(from_center - sphere.radius));
+    if (sphere.bore_radius > 0.0) nearest = std::min(nearest, std::abs(from_center - sphere.bore_radius));
   }
   for (const Box& box : boxes_)
     nearest = std::min(nearest, distance_from_bounds(Vec3((point - box.center()).cwiseAbs() - box.sizes() / 2.0)));

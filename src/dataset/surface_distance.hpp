@@ -22,11 +22,16 @@ class BodySurface {
     Vec3 center;
     Vec3 axis;  ///< unit
     double half_length = 0.0;
+    double radius = 0.0;
+    double bore_radius = 0.0;  ///< 0: solid
   };
-  double radius_ = 0.0;
-  double bore_radius_ = 0.0;  ///< 0: solid
+  struct Sphere {
+    Vec3 center;
+    double radius = 0.0;
+    double bore_radius = 0.0;
+  };
   std::vector<CappedCylinder> cylinders_;
-  std::vector<Vec3> sphere_centers_;
+  std::vector<Sphere> spheres_;
   std::vector<Box> boxes_;
 };
 

@@ -16,6 +16,7 @@ namespace {
 struct TubeAxis {
   Vec3 start;
   Vec3 end;
+  double radius = 0.0;
   bool start_is_free = false;
   bool end_is_free = false;
 
@@ -27,7 +28,7 @@ std::vector<TubeAxis> axes_of(const PlacedTube& placed) {
   const std::vector<int> degrees = placed.tube.node_degrees();
   std::vector<TubeAxis> axes;
   for (const Cylinder& c : placed.tube.cylinders)
-    axes.push_back({placed.node_in_world(c.node_a), placed.node_in_world(c.node_b),
+    axes.push_back({placed.node_in_world(c.node_a), placed.node_in_world(c.node_b), placed.tube.radius_of(c),
                     degrees[static_cast<std::size_t>(c.node_a)] < 2, degrees[static_cast<std::size_t>(c.node_b)] < 2});
   return axes;
 }
@@ -51,20 +52,22 @@ std::optional<double> axis_distance(const TubeAxis& a, const TubeAxis& b) {
 }
 
 /// Gap between the surfaces of two tubes, negative where they are in each other.
-std::optional<double> gap(const std::vector<TubeAxis>& a, const std::vector<TubeAxis>& b, double radii) {
+std::optional<double> gap(const std::vector<TubeAxis>& a, const std::vector<TubeAxis>& b) {
   std::optional<double> smallest;
   for (const TubeAxis& first : a)
     for (const TubeAxis& second : b)
-      if (const auto distance = axis_distance(first, second); distance && (!smallest || *distance - radii < *smallest))
-        smallest = *distance - radii;
+      if (const auto distance = axis_distance(first, second)) {
+        const double between = *distance - first.radius - second.radius;
+        if (!smallest || between < *smallest) smallest = between;
+      }
   return smallest;
 }
 
 /// Height of a cylinder's lowest point: of a joint's sphere, or of the rim of a free end.
-double lowest_point(const TubeAxis& axis, double radius) {
-  const double rim = radius * std::hypot(axis.direction().x(), axis.direction().y());
-  return std::min(axis.start.z() - (axis.start_is_free ? rim : radius),
-                  axis.end.z() - (axis.end_is_free ? rim : radius));
+double lowest_point(const TubeAxis& axis) {
+  const double rim = axis.radius * std::hypot(axis.direction().x(), axis.direction().y());
+  return std::min(axis.start.z() - (axis.start_is_free ? rim : axis.radius),
+                  axis.end.z() - (axis.end_is_free ? rim : axis.radius));
 }
 
 void add_heights_and_spread(const std::vector<CenterlineSamples>& samples, PileStatistics& statistics) {
@@ -83,11 +86,11 @@ void add_heights_and_spread(const std::vector<CenterlineSamples>& samples, PileS
     statistics.visible_share += tube.visible_fraction() / static_cast<double>(samples.size());
 }
 
-void add_contacts(const std::vector<std::vector<TubeAxis>>& axes, const Scene& scene, PileStatistics& statistics) {
+void add_contacts(const std::vector<std::vector<TubeAxis>>& axes, PileStatistics& statistics) {
   int touching = 0;
   for (std::size_t i = 0; i < axes.size(); ++i)
     for (std::size_t j = i + 1; j < axes.size(); ++j) {
-      const auto between = gap(axes[i], axes[j], scene.tubes[i].tube.radius + scene.tubes[j].tube.radius);
+      const auto between = gap(axes[i], axes[j]);
       if (!between) continue;
       touching += *between < kTouchingGap;
       statistics.penetration = std::max(statistics.penetration, -*between);
@@ -95,16 +98,16 @@ void add_contacts(const std::vector<std::vector<TubeAxis>>& axes, const Scene& s
   statistics.contacts = 2.0 * touching / static_cast<double>(axes.size());
 }
 
-void add_cylinders(const std::vector<std::vector<TubeAxis>>& axes, const Scene& scene, PileStatistics& statistics) {
+void add_cylinders(const std::vector<std::vector<TubeAxis>>& axes, PileStatistics& statistics) {
   double tilt = 0.0;
   double length = 0.0;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const double radius = scene.tubes[i].tube.radius;
-    for (const TubeAxis& axis : axes[i]) {
+  for (const std::vector<TubeAxis>& tube : axes) {
+    for (const TubeAxis& axis : tube) {
       tilt += axis.length() * std::asin(std::min(1.0, std::abs(axis.direction().z())));
       length += axis.length();
-      statistics.top_height = std::max({statistics.top_height, axis.start.z() + radius, axis.end.z() + radius});
-      statistics.penetration = std::max(statistics.penetration, -lowest_point(axis, radius));
+      statistics.top_height =
+          std::max({statistics.top_height, axis.start.z() + axis.radius, axis.end.z() + axis.radius});
+      statistics.penetration = std::max(statistics.penetration, -lowest_point(axis));
     }
   }
   statistics.mean_tilt_deg = length > 0.0 ? degrees(tilt / length) : 0.0;
@@ -146,8 +149,8 @@ PileStatistics pile_statistics(const Scene& scene, const std::vector<std::size_t
   std::vector<std::vector<TubeAxis>> axes;
   for (const PlacedTube& tube : scene.tubes) axes.push_back(axes_of(tube));
   add_heights_and_spread(sample_centerlines(scene), statistics);
-  add_cylinders(axes, scene, statistics);
-  add_contacts(axes, scene, statistics);
+  add_cylinders(axes, statistics);
+  add_contacts(axes, statistics);
   for (const std::size_t pixels : tube_pixels)
     statistics.visible_points += static_cast<double>(pixels) / static_cast<double>(scene.tubes.size());
   return statistics;

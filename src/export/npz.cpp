@@ -84,7 +84,7 @@ void add_scanner(const SceneRecord& record, Files& arrays) {
 
 /// Tubes have different numbers of nodes: all nodes stand in one array, and another says whose they are.
 void add_tubes(const SceneToExport& scene, Files& arrays) {
-  std::vector<double> poses, radii, nodes;
+  std::vector<double> poses, radii, nodes, cylinder_radii;
   std::vector<std::int64_t> tube_of_node, cylinders, visible, amodal;
   std::int64_t first_node = 0;
   const PileView view = view_pile(scene.record.scene);
@@ -96,8 +96,10 @@ void add_tubes(const SceneToExport& scene, Files& arrays) {
       append_rows(nodes, placed.node_in_world(node));
       tube_of_node.push_back(static_cast<std::int64_t>(k + 1));
     }
-    for (const Cylinder& cylinder : placed.tube.cylinders)
+    for (const Cylinder& cylinder : placed.tube.cylinders) {
       cylinders.insert(cylinders.end(), {first_node + cylinder.node_a, first_node + cylinder.node_b});
+      cylinder_radii.push_back(placed.tube.radius_of(cylinder));
+    }
     first_node += static_cast<std::int64_t>(placed.tube.nodes.size());
     visible.push_back(static_cast<std::int64_t>(scene.record.tube_pixels[k]));
     amodal.push_back(static_cast<std::int64_t>(view.amodal_pixels[k]));
@@ -107,6 +109,7 @@ void add_tubes(const SceneToExport& scene, Files& arrays) {
   arrays["nodes.npy"] = npy(nodes, {tube_of_node.size(), 3});
   arrays["tube_of_node.npy"] = npy(tube_of_node, {tube_of_node.size()});
   arrays["cylinders.npy"] = npy(cylinders, {cylinders.size() / 2, 2});
+  arrays["cylinder_radius.npy"] = npy(cylinder_radii, {cylinder_radii.size()});
   arrays["visible_pixels.npy"] = npy(visible, {visible.size()});
   arrays["amodal_pixels.npy"] = npy(amodal, {amodal.size()});
 }

@@ -205,7 +205,7 @@ class WorldWriter {
     const Pose pose = make_pose(Quat::FromTwoVectors(Vec3::UnitZ(), b - a), 0.5 * (a + b));
     write_part(fmt::format("cylinder-{}", index + 1), pose, physics_.friction_tube, color, [&] {
       out_.element("cylinder", [&] {
-        out_.number("radius", tube.radius);
+        out_.number("radius", tube.radius_of(cylinder));
         out_.number("length", (b - a).norm());
       });
     });
@@ -213,7 +213,7 @@ class WorldWriter {
 
   void write_joint(const Tube& tube, std::size_t node, Color color) {
     write_part(fmt::format("sphere-{}", node + 1), at(tube.nodes[node]), physics_.friction_tube, color,
-               [&] { out_.element("sphere", [&] { out_.number("radius", tube.radius); }); });
+               [&] { out_.element("sphere", [&] { out_.number("radius", tube.node_radii()[node]); }); });
   }
 
   /// The same shape to collide with and to look at.

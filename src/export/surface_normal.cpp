@@ -22,23 +22,20 @@ struct Nearest {
 
 SurfaceNormals::SurfaceNormals(const Scene& scene) : bin_(scene.bin) {
   for (const PlacedTube& placed : scene.tubes) {
-    const double wall = placed.tube.wall_thickness;
-    TubeParts parts{.radius = placed.tube.radius,
-                    .bore_radius = wall > 0.0 ? placed.tube.radius - wall : 0.0,
-                    .axes = {},
-                    .free_ends = {},
-                    .joints = {}};
+    TubeParts parts{.wall_thickness = placed.tube.wall_thickness, .axes = {}, .free_ends = {}, .joints = {}};
+    const std::vector<double> radii = placed.tube.node_radii();
     const std::vector<int> degrees = placed.tube.node_degrees();
     const auto is_free = [&](int node) { return degrees[static_cast<std::size_t>(node)] == 1; };
     for (const Cylinder& cylinder : placed.tube.cylinders) {
       const Vec3 a = placed.node_in_world(cylinder.node_a), b = placed.node_in_world(cylinder.node_b);
       const Vec3 axis = (b - a).normalized();
-      parts.axes.emplace_back(a, b);
-      if (is_free(cylinder.node_a)) parts.free_ends.emplace_back(a, -axis);
-      if (is_free(cylinder.node_b)) parts.free_ends.emplace_back(b, axis);
+      const double radius = placed.tube.radius_of(cylinder);
+      parts.axes.push_back({a, b, radius});
+      if (is_free(cylinder.node_a)) parts.free_ends.push_back({a, -axis, radius});
+      if (is_free(cylinder.node_b)) parts.free_ends.push_back({b, axis, radius});
     }
     for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
-      if (!is_free(node)) parts.joints.push_back(placed.node_in_world(node));
+      if (!is_free(node)) parts.joints.push_back({placed.node_in_world(node), radii[static_cast<std::size_t>(node)]});
     tubes_.push_back(std::move(parts));
   }
 }
@@ -49,19 +46,19 @@ Vec3 SurfaceNormals::at(Label label, const Vec3& point) const {
 
 Vec3 SurfaceNormals::at_tube(const TubeParts& tube, const Vec3& point) const {
   Nearest nearest;
-  const auto offer_wall = [&](const Vec3& from_middle) {
+  const auto offer_wall = [&](const Vec3& from_middle, double radius) {
     const double distance = from_middle.norm();
-    nearest.offer(distance - tube.radius, from_middle / distance);
-    if (tube.bore_radius > 0.0) nearest.offer(tube.bore_radius - distance, -from_middle / distance);
+    nearest.offer(distance - radius, from_middle / distance);
+    if (tube.wall_thickness > 0.0) nearest.offer(radius - tube.wall_thickness - distance, -from_middle / distance);
   };
-  for (const auto& [a, b] : tube.axes) {
+  for (const auto& [a, b, radius] : tube.axes) {
     const double along = (point - a).dot(b - a) / (b - a).squaredNorm();
     if (along < 0.0 || along > 1.0) continue;
-    offer_wall(point - (a + along * (b - a)));
+    offer_wall(point - (a + along * (b - a)), radius);
   }
-  for (const Vec3& center : tube.joints) offer_wall(point - center);
-  for (const auto& [center, normal] : tube.free_ends)
-    if ((point - center).norm() <= tube.radius) nearest.offer((point - center).dot(normal), normal);
+  for (const auto& [center, radius] : tube.joints) offer_wall(point - center, radius);
+  for (const auto& [center, normal, radius] : tube.free_ends)
+    if ((point - center).norm() <= radius) nearest.offer((point - center).dot(normal), normal);
   return nearest.normal;
 }
 

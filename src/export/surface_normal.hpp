@@ -17,11 +17,22 @@ class SurfaceNormals {
 
  private:
   struct TubeParts {
-    double radius = 0.0;
-    double bore_radius = 0.0;                      // 0: solid
-    std::vector<std::pair<Vec3, Vec3>> axes;       // of the cylinders
-    std::vector<std::pair<Vec3, Vec3>> free_ends;  // centre and outward unit normal
-    std::vector<Vec3> joints;
+    struct Axis {
+      Vec3 a, b;
+      double radius;
+    };
+    struct FreeEnd {
+      Vec3 center, normal;  // outward, unit
+      double radius;
+    };
+    struct Joint {
+      Vec3 center;
+      double radius;
+    };
+    double wall_thickness = 0.0;  // 0: solid
+    std::vector<Axis> axes;       // of the cylinders
+    std::vector<FreeEnd> free_ends;
+    std::vector<Joint> joints;
   };
   Vec3 at_tube(const TubeParts& tube, const Vec3& point) const;
   Vec3 at_bin(const Vec3& point) const;

@@ -240,8 +240,8 @@ void collide(const std::vector<Box>& bin, const CollisionTube& tube, double dept
     const Box reach = inflated(box, -std::min(depth_min, 0.0));
     if (!reach.intersects(tube.bounds)) continue;
     const std::size_t begin = out.size();
-    for (const Vec3& joint : tube.joints)
-      if (const auto touch = touch_box_with_ball(box, joint, tube.radius, depth_min)) out.push_back(*touch);
+    for (const Ball& joint : tube.joints)
+      if (const auto touch = touch_box_with_ball(box, joint.center, joint.radius, depth_min)) out.push_back(*touch);
     for (const Piece& piece : tube.pieces) {
       if (!reach.intersects(piece.bounds)) continue;
       if (piece.flat_a) add_rim_touches(box, piece, true, depth_min, out);

@@ -29,11 +29,16 @@ struct Piece {
   SolidCylinder solid(double eroded_by = 0.0) const;
 };
 
+struct Ball {
+  Vec3 center;
+  double radius = 0.0;
+};
+
 /// A tube posed in the world.
 struct CollisionTube {
   std::vector<Piece> pieces;
-  std::vector<Vec3> joints;  ///< nodes shared by two cylinders or more, and lone spheres
-  double radius = 0.0;
+  std::vector<Ball> joints;  ///< at nodes shared by two cylinders or more, and lone spheres
+  double radius = 0.0;       ///< of the thickest part
   Box bounds;
 };
 
@@ -45,7 +50,7 @@ struct Touch {
 };
 
 CollisionTube collision_tube(const PlacedTube& tube);
-/// As collision_tube, into an existing one, without allocation while the tube stays the same.
+/// As collision_tube, into an empty one or into that of the same tube in another pose, then without allocation.
 void update_collision_tube(const PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out);
 
 /// The bin as it collides: bin_boxes() with the ground below the floor, so that nothing falls through.

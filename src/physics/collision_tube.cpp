@@ -8,16 +8,29 @@ SolidCylinder Piece::solid(double eroded_by) const {
   return {axis.a + from * direction, direction, std::max(to - from, 0.0), std::max(radius - eroded_by, 0.0)};
 }
 
+namespace {
+
+/// What does not depend on the pose of the joints.
+void begin_joints(const Tube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
+  const std::vector<double> radii = tube.node_radii();
+  out.radius = tube.radius_max();
+  for (std::size_t i = 0; i < tube.nodes.size(); ++i)
+    if (node_degrees[i] != 1) out.joints.push_back({tube.nodes[i], radii[i]});
+}
+
+}  // namespace
+
 void update_collision_tube(const PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
-  const Vec3 margin = Vec3::Constant(tube.tube.radius);
-  out.radius = tube.tube.radius;
+  if (out.radius == 0.0) begin_joints(tube.tube, node_degrees, out);
   out.pieces.resize(tube.tube.cylinders.size());
-  out.joints.clear();
   out.bounds.setEmpty();
+  auto joint = out.joints.begin();
   for (std::size_t i = 0; i < tube.tube.nodes.size(); ++i) {
     if (node_degrees[i] == 1) continue;
-    out.joints.push_back(tube.node_in_world(static_cast<int>(i)));
-    out.bounds.extend(Box(out.joints.back() - margin, out.joints.back() + margin));
+    const Vec3 margin = Vec3::Constant(joint->radius);
+    joint->center = tube.node_in_world(static_cast<int>(i));
+    out.bounds.extend(Box(joint->center - margin, joint->center + margin));
+    ++joint;
   }
   for (std::size_t i = 0; i < out.pieces.size(); ++i) {
     const Cylinder& cylinder = tube.tube.cylinders[i];
@@ -26,7 +39,8 @@ void update_collision_tube(const PlacedTube& tube, const std::vector<int>& node_
     piece.direction = piece.axis.b - piece.axis.a;
     piece.length = piece.direction.norm();
     piece.direction /= piece.length;
-    piece.radius = tube.tube.radius;
+    piece.radius = tube.tube.radius_of(cylinder);
+    const Vec3 margin = Vec3::Constant(piece.radius);
     piece.flat_a = node_degrees[static_cast<std::size_t>(cylinder.node_a)] == 1;
     piece.flat_b = node_degrees[static_cast<std::size_t>(cylinder.node_b)] == 1;
     piece.bounds = Box(piece.axis.a.cwiseMin(piece.axis.b) - margin, piece.axis.a.cwiseMax(piece.axis.b) + margin);

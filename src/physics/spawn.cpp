@@ -10,7 +10,7 @@ constexpr int kOrientationTries = 1000;
 Box bounds_of(const Tube& tube, const Quat& rotation) {
   Box bounds;
   for (const Vec3& node : tube.nodes) bounds.extend(rotation * node);
-  return {bounds.min() - Vec3::Constant(tube.radius), bounds.max() + Vec3::Constant(tube.radius)};
+  return {bounds.min() - Vec3::Constant(tube.radius_max()), bounds.max() + Vec3::Constant(tube.radius_max())};
 }
 
 bool fits_between_walls(const Box& bounds, const Bin& bin, double clearance) {
@@ -44,7 +44,7 @@ CollisionTube moved(CollisionTube shape, const Vec3& by) {
     piece.axis = {piece.axis.a + by, piece.axis.b + by};
     piece.bounds.translate(by);
   }
-  for (Vec3& joint : shape.joints) joint += by;
+  for (Ball& joint : shape.joints) joint.center += by;
   shape.bounds.translate(by);
   return shape;
 }

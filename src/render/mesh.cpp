@@ -199,24 +199,30 @@ std::vector<Vec3> arms_in_world(const PlacedTube& placed, int node, std::size_t 
 
 void add_pipes(const PlacedTube& placed, MeshBuilder& builder) {
   const Tube& tube = placed.tube;
-  const double bore_radius = tube.radius - tube.wall_thickness;
+  const std::vector<double> radii = tube.node_radii();
   for (std::size_t i = 0; i < tube.cylinders.size(); ++i) {
     const Cylinder& cylinder = tube.cylinders[i];
-    builder.add_pipe(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b), tube.radius,
-                     bore_radius, arms_in_world(placed, cylinder.node_a, i), arms_in_world(placed, cylinder.node_b, i));
+    const double radius = tube.radius_of(cylinder);
+    builder.add_pipe(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b), radius,
+                     radius - tube.wall_thickness, arms_in_world(placed, cylinder.node_a, i),
+                     arms_in_world(placed, cylinder.node_b, i));
   }
   for (int node = 0; node < static_cast<int>(tube.nodes.size()); ++node) {
     const std::vector<Vec3> arms = arms_in_world(placed, node);
-    if (arms.size() > 1) builder.add_pipe_joint(placed.node_in_world(node), tube.radius, bore_radius, arms);
+    const double radius = radii[static_cast<std::size_t>(node)];
+    if (arms.size() > 1) builder.add_pipe_joint(placed.node_in_world(node), radius, radius - tube.wall_thickness, arms);
   }
 }
 
 void add_solids(const PlacedTube& placed, const std::vector<int>& degrees, MeshBuilder& builder) {
   const Tube& tube = placed.tube;
   for (const Cylinder& cylinder : tube.cylinders)
-    builder.add_cylinder(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b), tube.radius);
+    builder.add_cylinder(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b),
+                         tube.radius_of(cylinder));
+  const std::vector<double> radii = tube.node_radii();
   for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
-    if (degrees[static_cast<std::size_t>(node)] != 1) builder.add_sphere(placed.node_in_world(node), tube.radius);
+    if (const auto i = static_cast<std::size_t>(node); degrees[i] != 1)
+      builder.add_sphere(placed.node_in_world(node), radii[i]);
 }
 
 }  // namespace

@@ -5,17 +5,21 @@ namespace {
 
 void add_tube(const PlacedTube& placed, Label label, const Vec3& scanner_in_world, SceneSolids& solids) {
   const Tube& tube = placed.tube;
-  const double bore_radius = tube.wall_thickness > 0.0 ? tube.radius - tube.wall_thickness : 0.0;
+  const auto bore_radius = [&](double radius) {
+    return tube.wall_thickness > 0.0 ? radius - tube.wall_thickness : 0.0;
+  };
   const auto node_seen = [&](int node) -> Vec3 { return placed.node_in_world(node) - scanner_in_world; };
   for (const Cylinder& cylinder : tube.cylinders) {
     const Vec3 base = node_seen(cylinder.node_a);
     const Vec3 top = node_seen(cylinder.node_b);
-    if (base != top) solids.cylinders.push_back({SolidCylinder(base, top, tube.radius), label, bore_radius});
+    const double radius = tube.radius_of(cylinder);
+    if (base != top) solids.cylinders.push_back({SolidCylinder(base, top, radius), label, bore_radius(radius)});
   }
   const std::vector<int> degrees = tube.node_degrees();
+  const std::vector<double> radii = tube.node_radii();
   for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
-    if (degrees[static_cast<std::size_t>(node)] != 1)
-      solids.spheres.push_back({SolidSphere(node_seen(node), tube.radius), label, bore_radius});
+    if (const auto i = static_cast<std::size_t>(node); degrees[i] != 1)
+      solids.spheres.push_back({SolidSphere(node_seen(node), radii[i]), label, bore_radius(radii[i])});
 }
 
 }  // namespace

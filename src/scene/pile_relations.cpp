@@ -15,19 +15,20 @@ struct Core {
 
 Core core_of(const PlacedTube& placed) {
   const Tube& tube = placed.tube;
-  const double eroded = std::min(kGrazing, 0.25 * tube.radius);
-  const double radius = tube.radius - eroded;
+  const auto eroded_of = [](double radius) { return std::min(kGrazing, 0.25 * radius); };
   const std::vector<int> degrees = tube.node_degrees();
   const auto is_free = [&](int node) { return degrees[static_cast<std::size_t>(node)] == 1; };
   Core core;
   for (const Cylinder& cylinder : tube.cylinders) {
     const Vec3 a = placed.node_in_world(cylinder.node_a), b = placed.node_in_world(cylinder.node_b);
+    const double eroded = eroded_of(tube.radius_of(cylinder)), radius = tube.radius_of(cylinder) - eroded;
     const Vec3 cut = std::min(eroded / (b - a).norm(), 0.25) * (b - a);
     const bool free_a = is_free(cylinder.node_a), free_b = is_free(cylinder.node_b);
     core.pieces.emplace_back(free_a ? Vec3(a + cut) : a, free_b ? Vec3(b - cut) : b, radius, free_a, free_b);
   }
   for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
-    if (degrees[static_cast<std::size_t>(node)] == 0) core.pieces.emplace_back(placed.node_in_world(node), radius);
+    if (degrees[static_cast<std::size_t>(node)] == 0)
+      core.pieces.emplace_back(placed.node_in_world(node), tube.radius - eroded_of(tube.radius));
   for (const ConvexPiece& piece : core.pieces) core.bounds.extend(piece.bounds());
   return core;
 }

@@ -67,8 +67,10 @@ OrderedJson tube_to_json(const PlacedTube& placed, std::size_t label, Color colo
     nodes.push_back(to_json(tube.nodes[static_cast<std::size_t>(i)]));
     nodes_in_world.push_back(to_json(placed.node_in_world(i)));
   }
-  for (const Cylinder& cylinder : tube.cylinders)
+  for (const Cylinder& cylinder : tube.cylinders) {
     cylinders.push_back({{"node_a", cylinder.node_a}, {"node_b", cylinder.node_b}, {"order", cylinder.order}});
+    if (cylinder.radius > 0.0) cylinders.back()["radius"] = to_json(cylinder.radius);
+  }
   OrderedJson json = {{"id", label}, {"label", label}};
   if (!tube.kind.empty()) json["kind"] = tube.kind;
   json.update({{"color", color_to_json(color)},
@@ -161,8 +163,12 @@ std::vector<Cylinder> read_cylinders(const JsonPlace& place, const Tube& tube) {
   const double last_node = static_cast<double>(tube.nodes.size()) - 1.0;
   std::vector<Cylinder> cylinders;
   for (const JsonPlace& element : place.elements()) {
-    const Cylinder cylinder = {element.at("node_a").integer({0.0, last_node}),
-                               element.at("node_b").integer({0.0, last_node}), element.at("order").integer({0.0})};
+    Cylinder cylinder = {element.at("node_a").integer({0.0, last_node}), element.at("node_b").integer({0.0, last_node}),
+                         element.at("order").integer({0.0})};
+    if (element.has("radius")) {
+      cylinder.radius = element.at("radius").number();
+      if (!(cylinder.radius > tube.wall_thickness)) element.at("radius").fail("a number above the wall's thickness");
+    }
     if (!(tube.length(cylinder) > 0.0)) element.fail("a cylinder between nodes at different places");
     cylinders.push_back(cylinder);
   }

@@ -94,6 +94,7 @@ class Parser {
     for (std::uint32_t i = 0; i < node_count; ++i) read_node(tube);
     for (std::uint32_t i = 0; i < edge_count; ++i) read_edge(tube);
     check_every_node_is_used(tube);
+    check_node_radii(tube);
     return tube;
   }
 
@@ -102,24 +103,34 @@ class Parser {
     if (!node_index_.emplace(words[0], static_cast<int>(tube.nodes.size())).second)
       fail("the node id {} stands twice in this tube", excerpt(words[0]));
     tube.nodes.push_back(read_point(words, 1, "coordinate"));
-    read_radius(words[4], tube);
+    const double radius = read_radius(words[4]);
+    if (tube.radius == 0.0) tube.radius = radius;
+    node_radii_.push_back(radius);
   }
 
-  /// A tube has one radius, wherever it stands.
-  void read_radius(std::string_view word, Tube& tube) const {
+  double read_radius(std::string_view word) const {
     const double radius = read_number(word, "radius");
     if (radius <= 0.0) fail("radius {} is not valid; valid: above 0 m", radius);
-    if (tube.radius == 0.0) tube.radius = radius;
-    if (std::abs(radius - tube.radius) > kPlaceTolerance)
-      fail("radius {} is not that of the tube's first node, {}; a tube has one radius", radius, tube.radius);
+    return radius;
+  }
+
+  /// A node is as thick as the thickest edge there, as format_tubes_txt writes it.
+  void check_node_radii(const Tube& tube) const {
+    const std::vector<double> radii = tube.node_radii();
+    for (const auto& [id, index] : node_index_) {
+      const auto i = static_cast<std::size_t>(index);
+      if (std::abs(node_radii_[i] - radii[i]) > kPlaceTolerance)
+        fail("node {} has the radius {}, the thickest of its edges {}", excerpt(id), node_radii_[i], radii[i]);
+    }
   }
 
   void read_edge(Tube& tube) {
     const std::vector<std::string_view> words = read_line(13, kEdgeLine);
     const std::optional<int> order = to_number<int>(words[3]);
     if (!order || *order < 1) fail("order '{}' is not a whole number from 1", excerpt(words[3]));
-    const Cylinder cylinder = {find_node(words[1]), find_node(words[2]), *order - 1};
-    read_radius(words[4], tube);
+    Cylinder cylinder = {find_node(words[1]), find_node(words[2]), *order - 1};
+    const double radius = read_radius(words[4]);
+    if (radius != tube.radius) cylinder.radius = radius;
     const Vec3 center = read_point(words, 5, "centre");
     const Quat rotation(read_number(words[8], "quaternion"), read_number(words[9], "quaternion"),
                         read_number(words[10], "quaternion"), read_number(words[11], "quaternion"));
@@ -161,6 +172,7 @@ class Parser {
   const std::string& name_;
   std::set<std::string_view> tube_ids_;
   std::map<std::string_view, int> node_index_;
+  std::vector<double> node_radii_;
 };
 
 }  // namespace
@@ -177,9 +189,10 @@ std::string format_tubes_txt(const std::vector<PlacedTube>& tubes) {
   for (std::size_t k = 0; k < tubes.size(); ++k) {
     const Tube& tube = tubes[k].tube;
     fmt::format_to(out, "{} {} {}\n", k + 1, tube.nodes.size(), tube.cylinders.size());
+    const std::vector<double> radii = tube.node_radii();
     for (int i = 0; i < static_cast<int>(tube.nodes.size()); ++i) {
       const Vec3 p = tubes[k].node_in_world(i);
-      fmt::format_to(out, "{} {} {} {} {}\n", i + 1, p.x(), p.y(), p.z(), tube.radius);
+      fmt::format_to(out, "{} {} {} {} {}\n", i + 1, p.x(), p.y(), p.z(), radii[static_cast<std::size_t>(i)]);
     }
     for (const Cylinder& cylinder : tube.cylinders) {
       const Vec3 a = tubes[k].node_in_world(cylinder.node_a);
@@ -188,7 +201,7 @@ std::string format_tubes_txt(const std::vector<PlacedTube>& tubes) {
       const Quat q = Quat::FromTwoVectors(Vec3::UnitZ(), b - a);
       const int id_a = cylinder.node_a + 1, id_b = cylinder.node_b + 1;
       fmt::format_to(out, "e_{}_{} {} {} {} {} {} {} {} {} {} {} {} {}\n", id_a, id_b, id_a, id_b, cylinder.order + 1,
-                     tube.radius, c.x(), c.y(), c.z(), q.w(), q.x(), q.y(), q.z(), (b - a).norm());
+                     tube.radius_of(cylinder), c.x(), c.y(), c.z(), q.w(), q.x(), q.y(), q.z(), (b - a).norm());
     }
   }
   return text;

@@ -1,6 +1,7 @@
 // The union of cylinders and joint spheres is split among the cylinders by the bisecting planes at each joint, so
 // no part counts twice. Along a line parallel to a cylinder's axis its share is one interval, integrated exactly;
-// over the cross-section a polar product rule is used.
+// over the cross-section a polar product rule is used. Where cylinders of different radii meet, the step between them is
+// left out.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -50,8 +51,10 @@ double line_start(const Vec3& offset, const Vec3& axis, const std::vector<Vec3>&
   return start;
 }
 
-void add_cylinder(const Tube& tube, std::size_t index, double radius, Moments& moments) {
+/// `wall`: metres, taken off the radius; as in all that follows.
+void add_cylinder(const Tube& tube, std::size_t index, double wall, Moments& moments) {
   const Cylinder& cylinder = tube.cylinders[index];
+  const double radius = tube.radius_of(cylinder) - wall;
   const Vec3& a = tube.nodes[static_cast<std::size_t>(cylinder.node_a)];
   const double length = tube.length(cylinder);
   const Vec3 axis = (tube.nodes[static_cast<std::size_t>(cylinder.node_b)] - a) / length;
@@ -76,7 +79,8 @@ void add_cylinder(const Tube& tube, std::size_t index, double radius, Moments& m
 }
 
 /// Nodes without a cylinder are spheres of their own.
-void add_lone_spheres(const Tube& tube, double radius, Moments& moments) {
+void add_lone_spheres(const Tube& tube, double wall, Moments& moments) {
+  const double radius = tube.radius - wall;
   const std::vector<int> degrees = tube.node_degrees();
   for (std::size_t i = 0; i < tube.nodes.size(); ++i) {
     if (degrees[i] != 0) continue;
@@ -88,18 +92,18 @@ void add_lone_spheres(const Tube& tube, double radius, Moments& moments) {
   }
 }
 
-Moments solid_moments(const Tube& tube, double radius) {
+Moments solid_moments(const Tube& tube, double wall) {
   Moments moments;
-  for (std::size_t i = 0; i < tube.cylinders.size(); ++i) add_cylinder(tube, i, radius, moments);
-  add_lone_spheres(tube, radius, moments);
+  for (std::size_t i = 0; i < tube.cylinders.size(); ++i) add_cylinder(tube, i, wall, moments);
+  add_lone_spheres(tube, wall, moments);
   return moments;
 }
 
 }  // namespace
 
 MassProperties mass_properties(const Tube& tube) {
-  Moments moments = solid_moments(tube, tube.radius);
-  if (tube.wall_thickness > 0.0) moments.subtract(solid_moments(tube, tube.radius - tube.wall_thickness));
+  Moments moments = solid_moments(tube, 0.0);
+  if (tube.wall_thickness > 0.0) moments.subtract(solid_moments(tube, tube.wall_thickness));
   const double density = tube.mass / moments.volume;
   MassProperties properties;
   properties.mass = tube.mass;

@@ -1,6 +1,25 @@
 #include "tubebin/tube/tube.hpp"
 
+#include <algorithm>
+
 namespace tubebin {
+
+std::vector<double> Tube::node_radii() const {
+  std::vector<double> radii(nodes.size(), 0.0);
+  for (const Cylinder& cylinder : cylinders)
+    for (const int node : {cylinder.node_a, cylinder.node_b}) {
+      double& of_node = radii[static_cast<std::size_t>(node)];
+      of_node = std::max(of_node, radius_of(cylinder));
+    }
+  for (double& of_node : radii)
+    if (of_node == 0.0) of_node = radius;
+  return radii;
+}
+
+double Tube::radius_max() const {
+  const std::vector<double> radii = node_radii();
+  return radii.empty() ? radius : *std::ranges::max_element(radii);
+}
 
 std::vector<int> Tube::node_degrees() const {
   std::vector<int> degrees(nodes.size(), 0);

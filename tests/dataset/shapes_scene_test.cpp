@@ -74,6 +74,24 @@ TEST(ShapeScenes, EachShapeAloneIsMadeAndVerified) {
   }
 }
 
+TEST(ShapeScenes, ACurveWhoseRadiusVariesIsMadeAndVerified) {
+  for (const double wall : {0.0, 0.002}) {
+    const TemporaryFolder folder;
+    const std::string config = folder / "config.yaml";
+    write_text(config, fmt::format("set: Q\nseed: 5\nscanner: {{width: 640, height: 400}}\noutput: {{preview: true}}\n"
+                                   "tube: {{shape: curve, radius: 0.01, radius_variation: 0.4, wall_thickness: {}}}\n",
+                                   wall));
+    const SceneRecord record = make_one(folder, config, "Q", 3);
+    const auto from_text = read_tubes_txt(folder / "data/Q3/001/tubes.txt");
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Tube &tube = record.scene.tubes[k].tube, &text = from_text[k].tube;
+      EXPECT_GT(tube.radius_max(), 0.0101);
+      for (std::size_t i = 0; i < tube.cylinders.size(); ++i)
+        EXPECT_NEAR(text.radius_of(text.cylinders[i]), tube.radius_of(tube.cylinders[i]), 1e-12);
+    }
+  }
+}
+
 TEST(ShapeScenes, KindsThatCannotBeAreNamedWithTheirPlace) {
   const TemporaryFolder folder;
   const std::string config = folder / "config.yaml";

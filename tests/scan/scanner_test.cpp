@@ -78,6 +78,19 @@ TEST(Scanner, LooksIntoTheOpenEndsOfHollowTubes) {
   }
 }
 
+TEST(Scanner, RadiusVariesAlongTubes) {
+  for (const double wall : {0.0, 0.001}) {
+    Scene scene = random_scene(6, 14);
+    Random random(3);
+    for (PlacedTube& placed : scene.tubes) {
+      placed.tube.wall_thickness = wall;
+      for (Cylinder& cylinder : placed.tube.cylinders) cylinder.radius = random.uniform(0.008, 0.016);
+    }
+    look_closely(scene.scanner, 120, 76);
+    EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 4000);
+  }
+}
+
 TEST(Scanner, HollowTubesAreOpenOnlyAtTheirEnds) {
   Scene hollow = random_scene(8, 7);
   look_closely(hollow.scanner, 480, 304);

@@ -27,21 +27,24 @@ inline double box_distance(const Vec3& p, const Vec3& low, const Vec3& high) {
   return std::min(beyond.maxCoeff(), 0.0) + beyond.cwiseMax(0.0).norm();
 }
 
-/// Of the union of a tube's cylinders and joint spheres with a radius of their own; free ends are longer by `excess`.
+/// Of the union of a tube's cylinders and joint spheres, thinner by `wall`; free ends are longer by `excess`.
 /// Negative inside; exact outside the union and on its surface.
-inline double union_distance(const Vec3& p, const PlacedTube& placed, double radius, double excess) {
+inline double union_distance(const Vec3& p, const PlacedTube& placed, double wall, double excess) {
   const Tube& tube = placed.tube;
+  const std::vector<double> radii = tube.node_radii();
   const std::vector<int> degrees = tube.node_degrees();
   double nearest = std::numeric_limits<double>::infinity();
   for (const Cylinder& cylinder : tube.cylinders) {
     const Vec3 a = placed.node_in_world(cylinder.node_a), b = placed.node_in_world(cylinder.node_b);
     const Vec3 beyond = excess * (b - a).normalized();
     const auto is_free = [&](int node) { return degrees[static_cast<std::size_t>(node)] == 1; };
-    nearest = std::min(nearest, cylinder_distance(p, is_free(cylinder.node_a) ? Vec3(a - beyond) : a,
-                                                  is_free(cylinder.node_b) ? Vec3(b + beyond) : b, radius));
+    nearest = std::min(
+        nearest, cylinder_distance(p, is_free(cylinder.node_a) ? Vec3(a - beyond) : a,
+                                   is_free(cylinder.node_b) ? Vec3(b + beyond) : b, tube.radius_of(cylinder) - wall));
   }
   for (std::size_t i = 0; i < degrees.size(); ++i)
-    if (degrees[i] != 1) nearest = std::min(nearest, (p - placed.node_in_world(static_cast<int>(i))).norm() - radius);
+    if (degrees[i] != 1)
+      nearest = std::min(nearest, (p - placed.node_in_world(static_cast<int>(i))).norm() - radii[i] + wall);
   return nearest;
 }
 
@@ -50,9 +53,9 @@ inline double union_distance(const Vec3& p, const PlacedTube& placed, double rad
 inline double tube_distance(const Vec3& p, const PlacedTube& placed) {
   constexpr double kBeyondTheEnd = 0.001;
   const Tube& tube = placed.tube;
-  const double outside = union_distance(p, placed, tube.radius, 0.0);
+  const double outside = union_distance(p, placed, 0.0, 0.0);
   if (tube.wall_thickness == 0.0) return outside;
-  return std::max(outside, -union_distance(p, placed, tube.radius - tube.wall_thickness, kBeyondTheEnd));
+  return std::max(outside, -union_distance(p, placed, tube.wall_thickness, kBeyondTheEnd));
 }
 
 /// The bin is what is left of its outer block when the space inside and above the floor is taken out; the

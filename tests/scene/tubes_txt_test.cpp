@@ -126,6 +126,16 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(text.find(from), from.size(), to);
 }
 
+TEST(TubesTxt, RadiiAlongATubeReadBack) {
+  Tube tube{.radius = 0.01, .mass = 1.0, .nodes = {{0, 0, 0}, {0, 0, 0.1}, {0, 0, 0.2}, {0, 0, 0.3}}, .cylinders = {}};
+  tube.cylinders = {{0, 1, 0, 0.012}, {1, 2, 1, 0.009}, {2, 3, 2, 0.0125}};
+  const std::string text = format_tubes_txt({{tube, Pose::Identity()}});
+  const Tube back = parse_tubes_txt(text, "a.txt").front().tube;
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(back.radius_of(back.cylinders[i]), tube.cylinders[i].radius);
+  EXPECT_EQ(back.node_radii(), (std::vector<double>{0.012, 0.012, 0.0125, 0.0125}));
+  EXPECT_EQ(format_tubes_txt({{back, Pose::Identity()}}), text);
+}
+
 TEST(TubesTxt, ErrorsNameLineAndCause) {
   EXPECT_EQ(text_error_of(kTube), "no error");
   EXPECT_EQ(text_error_of(""), "a.txt: the file is empty; expected the number of tubes");
@@ -143,7 +153,8 @@ TEST(TubesTxt, ErrorsNameLineAndCause) {
               HasSubstr("a.txt:4: the node id 1 stands twice"));
   EXPECT_THAT(text_error_of(replaced(kTube, "2 0 0 0.5", "2 0 nan 0.5")),
               HasSubstr("coordinate 'nan' is not a number"));
-  EXPECT_THAT(text_error_of(replaced(kTube, "2 0 0 0.5 0.01", "2 0 0 0.5 0.02")), HasSubstr("a tube has one radius"));
+  EXPECT_THAT(text_error_of(replaced(kTube, "2 0 0 0.5 0.01", "2 0 0 0.5 0.02")),
+              HasSubstr("node 2 has the radius 0.02, the thickest of its edges 0.01"));
   EXPECT_THAT(text_error_of(replaced(kTube, "1 0 0 0 0.01", "1 0 0 0 -1")),
               HasSubstr("a.txt:3: radius -1 is not valid"));
   EXPECT_THAT(text_error_of(replaced(kTube, "e_1_2 1 2", "e_1_2 1 3")),

@@ -16,15 +16,16 @@ Tube chain(std::vector<Vec3> nodes, double radius, double wall) {
 }
 
 /// Inside the union of flat-ended cylinders and joint spheres, by its definition.
-bool inside(const Tube& tube, double radius, const Vec3& point) {
+bool inside(const Tube& tube, double wall, const Vec3& point) {
+  const std::vector<double> radii = tube.node_radii();
   const std::vector<int> degrees = tube.node_degrees();
   for (std::size_t i = 0; i < tube.nodes.size(); ++i)
-    if (degrees[i] >= 2 && (point - tube.nodes[i]).norm() <= radius) return true;
+    if (degrees[i] >= 2 && (point - tube.nodes[i]).norm() <= radii[i] - wall) return true;
   for (const Cylinder& c : tube.cylinders) {
     const Vec3 a = tube.nodes[static_cast<std::size_t>(c.node_a)];
     const Vec3 axis = tube.nodes[static_cast<std::size_t>(c.node_b)] - a;
     const double t = (point - a).dot(axis) / axis.squaredNorm();
-    if (t >= 0.0 && t <= 1.0 && (point - a - t * axis).norm() <= radius) return true;
+    if (t >= 0.0 && t <= 1.0 && (point - a - t * axis).norm() <= tube.radius_of(c) - wall) return true;
   }
   return false;
 }
@@ -32,15 +33,14 @@ bool inside(const Tube& tube, double radius, const Vec3& point) {
 MassProperties monte_carlo(const Tube& tube, int samples) {
   Eigen::AlignedBox3d bounds;
   for (const Vec3& node : tube.nodes) bounds.extend(node);
-  bounds = Eigen::AlignedBox3d(bounds.min() - Vec3::Constant(tube.radius), bounds.max() + Vec3::Constant(tube.radius));
+  bounds = Eigen::AlignedBox3d(bounds.min() - Vec3::Constant(tube.radius_max()),
+                               bounds.max() + Vec3::Constant(tube.radius_max()));
   Random random(11);
   std::vector<Vec3> hits;
   for (int i = 0; i < samples; ++i) {
     const Vec3 p(random.uniform(bounds.min().x(), bounds.max().x()), random.uniform(bounds.min().y(), bounds.max().y()),
                  random.uniform(bounds.min().z(), bounds.max().z()));
-    if (inside(tube, tube.radius, p) &&
-        !(tube.wall_thickness > 0.0 && inside(tube, tube.radius - tube.wall_thickness, p)))
-      hits.push_back(p);
+    if (inside(tube, 0.0, p) && !(tube.wall_thickness > 0.0 && inside(tube, tube.wall_thickness, p))) hits.push_back(p);
   }
   MassProperties properties;
   for (const Vec3& p : hits) properties.center += p / static_cast<double>(hits.size());
@@ -77,6 +77,34 @@ TEST(MassProperties, BentTubesMatchMonteCarlo) {
     EXPECT_LT((exact.center - sampled.center).norm(), 4e-4);
     EXPECT_LT((exact.inertia - sampled.inertia).norm(), 0.02 * exact.inertia.norm());
   }
+}
+
+TEST(MassProperties, RadiusThatVariesMatchesMonteCarlo) {
+  TubeOptions options;
+  read_yaml_text("shape: curve\nradius_variation: 0.5\n", "test", [&](Fields& fields) { describe(fields, options); });
+  Random random(12);
+  for (const double wall : {0.0, 0.003}) {
+    options.wall_thickness = wall;
+    const Tube tube = generate_tubes(1, options, random).front();
+    const MassProperties exact = mass_properties(tube);
+    const MassProperties sampled = monte_carlo(tube, 300000);
+    EXPECT_LT((exact.center - sampled.center).norm(), 2e-3);
+    EXPECT_LT((exact.inertia - sampled.inertia).norm(), 0.04 * exact.inertia.norm());
+  }
+}
+
+TEST(MassProperties, ConeMatchesTheTextbook) {
+  // A cone of height h and radius R in 400 steps: centre at h / 4 above its base, inertia about its axis 3/10 m R^2.
+  constexpr int kSteps = 400;
+  const double height = 0.3, radius = 0.03;
+  Tube tube{.radius = radius, .mass = 2.0, .nodes = {Vec3::Zero()}, .cylinders = {}};
+  for (int i = 0; i < kSteps; ++i) {
+    tube.nodes.emplace_back(0, 0, height * (i + 1) / kSteps);
+    tube.cylinders.push_back({i, i + 1, i, radius * (1.0 - (i + 0.5) / kSteps)});
+  }
+  const MassProperties m = mass_properties(tube);
+  EXPECT_NEAR(m.center.z(), height / 4.0, 0.003 * height);
+  EXPECT_NEAR(m.inertia(2, 2), 0.3 * 2.0 * radius * radius, 0.01 * 0.3 * 2.0 * radius * radius);
 }
 
 TEST(MassProperties, TurnsWithTheTube) {

@@ -242,7 +242,7 @@ double closes_its_ends_by(const Tube& tube) {
     const Vec3 inward = tube.directions_from(static_cast<int>(end)).front();
     for (std::size_t i = 0; i < degrees.size(); ++i)
       if (degrees[i] > 1 && (tube.nodes[i] - tube.nodes[end]).norm() < 3.0 * tube.radius)
-        most = std::max(most, tube.radius - inward.dot(tube.nodes[i] - tube.nodes[end]));
+        most = std::max(most, tube.node_radii()[i] - inward.dot(tube.nodes[i] - tube.nodes[end]));
   }
   return most;
 }
@@ -253,6 +253,35 @@ TEST(Curve, EndsFlat) {
     const TubeOptions options = read_tube(fmt::format("tube: {{shape: curve, form: {}, radius: 0.02}}\n", form));
     for (const Tube& tube : generate_tubes(200, options, random)) EXPECT_LE(closes_its_ends_by(tube), 0.0) << form;
   }
+}
+
+TEST(Curve, RadiusVariesSmoothlyWithinItsBounds) {
+  const TubeOptions options = read_tube("tube: {shape: curve, radius: 0.01, radius_variation: 0.5, length: 0.6}\n");
+  Random random(9);
+  double thinnest = 1.0, thickest = 0.0;
+  for (const Tube& tube : generate_tubes(200, options, random)) {
+    for (std::size_t i = 0; i < tube.cylinders.size(); ++i) {
+      const double radius = tube.cylinders[i].radius;
+      thinnest = std::min(thinnest, radius);
+      thickest = std::max(thickest, radius);
+      // A smooth step over a section of 0.05 m or more is 1.5 times as steep as a straight one, 0.01 m over 0.05 m.
+      if (i == 0) continue;
+      const double apart = 0.5 * (tube.length(tube.cylinders[i]) + tube.length(tube.cylinders[i - 1]));
+      EXPECT_LE(std::abs(radius - tube.cylinders[i - 1].radius), 1.5 * 0.01 / 0.05 * apart + 1e-12);
+    }
+    EXPECT_LE(closes_its_ends_by(tube), 0.0);
+  }
+  EXPECT_GE(thinnest, 0.005);
+  EXPECT_LE(thickest, 0.015);
+  EXPECT_LT(thinnest, 0.0055);
+  EXPECT_GT(thickest, 0.0145);
+  EXPECT_EQ(generate_tubes(1, read_tube("tube: {shape: curve}\n"), random).front().cylinders[3].radius, 0.0);
+}
+
+TEST(Curve, RefusesRadiiThatCannotBe) {
+  EXPECT_THAT(problem_with("tube: {shape: curve, radius: 0.04, radius_variation: 0.5}\n"), HasSubstr("0.06 m"));
+  EXPECT_THAT(problem_with("tube: {shape: curve, radius: 0.01, wall_thickness: 0.006, radius_variation: 0.5}\n"),
+              HasSubstr("leaves no bore"));
 }
 
 TEST(HollowTubes, NeedEndsThatNoJointCloses) {

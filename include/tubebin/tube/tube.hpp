@@ -9,23 +9,30 @@
 
 namespace tubebin {
 
-/// A cylinder between two nodes, with flat ends. At a node that two or more cylinders share, a sphere of the
-/// tube's radius fills the joint (paper, Section 3).
+/// A cylinder between two nodes, with flat ends. At a node that two or more cylinders share, a sphere of the thickest one's
+/// radius fills the joint (paper, Section 3).
 struct Cylinder {
-  int node_a = 0;  ///< index into Tube::nodes
-  int node_b = 0;  ///< index into Tube::nodes
-  int order = 0;   ///< position of the cylinder along its path, from 0
+  int node_a = 0;       ///< index into Tube::nodes
+  int node_b = 0;       ///< index into Tube::nodes
+  int order = 0;        ///< position of the cylinder along its path, from 0
+  double radius = 0.0;  ///< outer, metres; 0: the tube's
 
   friend bool operator==(const Cylinder&, const Cylinder&) = default;
 };
 
 struct Tube {
-  double radius = 0.0;          ///< outer radius, metres
+  double radius = 0.0;          ///< outer radius of all cylinders that have none of their own, metres
   double wall_thickness = 0.0;  ///< metres; 0: solid
   double mass = 0.0;            ///< kilograms
   std::vector<Vec3> nodes;      ///< metres, in the tube's own frame
   std::vector<Cylinder> cylinders;
   std::string kind = {};  ///< its kind's name in a mixed bin; empty where all tubes are of one kind
+
+  double radius_of(const Cylinder& cylinder) const { return cylinder.radius > 0.0 ? cylinder.radius : radius; }
+  /// Of the joint's sphere at each node: that of the thickest cylinder there; the tube's at a node alone.
+  std::vector<double> node_radii() const;
+  /// Of the thickest part, metres.
+  double radius_max() const;
 
   /// Number of cylinders that meet at each node.
   std::vector<int> node_degrees() const;

@@ -35,7 +35,7 @@ Eigen::AlignedBox3d scene_bounds(const Scene& scene) {
   for (const PlacedTube& placed : scene.tubes)
     for (int node = 0; node < static_cast<int>(placed.tube.nodes.size()); ++node)
       for (const double side : {-1.0, 1.0})
-        bounds.extend(placed.node_in_world(node) + Vec3::Constant(side * placed.tube.radius));
+        bounds.extend(placed.node_in_world(node) + Vec3::Constant(side * placed.tube.radius_max()));
   return bounds;
 }
 

@@ -88,6 +88,14 @@ double least_bend_radius(const Tube& tube) {
   return least;
 }
 
+/// Radii where sections meet, and between them a smooth step (3 t^2 - 2 t^3), level at both of its ends.
+double radius_along(const std::vector<double>& radii, const std::vector<double>& lengths, double along) {
+  std::size_t section = 0;
+  while (section + 1 < lengths.size() && along > lengths[section]) along -= lengths[section++];
+  const double t = std::clamp(along / lengths[section], 0.0, 1.0);
+  return radii[section] + (radii[section + 1] - radii[section]) * t * t * (3.0 - 2.0 * t);
+}
+
 class Curve : public CopiedShape<Curve> {
  public:
   void describe(Fields& fields, TubeOptions&) override {
@@ -102,6 +110,8 @@ class Curve : public CopiedShape<Curve> {
                   "smallest angle of an arc, or between sides");
     fields.number("bend_angle_max_deg", bend_angle_max_deg_, {0.0, 180.0}, "degrees",
                   "largest angle of an arc, or between sides");
+    fields.number("radius_variation", radius_variation_, {0.0, 0.9}, "",
+                  "how much thicker and thinner than radius the tube may be along its length, as a part of radius");
     fields.number("cylinder_length_max", cylinder_length_max_, {0.0001, 1.0}, "m",
                   "longest cylinder; shorter ones follow the curve more closely");
   }
@@ -121,15 +131,20 @@ class Curve : public CopiedShape<Curve> {
     if (3.0 * end_length(options) > length_)
       places.fail(prefix + ".length", fmt::format("{} m is less than three times the {} m of a straight end", length_,
                                                   end_length(options)));
-    if (tightest_bend() < options.radius)
+    if (tightest_bend() < thickest(options))
       places.fail(prefix + ".bend_angle_max_deg",
                   fmt::format("{} degrees over {} m bend with a radius of {:.4f} m, less than the tube's radius = {} m",
-                              bend_angle_max_deg_, section_length_min_, tightest_bend(), options.radius));
+                              bend_angle_max_deg_, section_length_min_, tightest_bend(), thickest(options)));
+    if (const double thinnest = options.radius * (1.0 - radius_variation_);
+        radius_variation_ > 0.0 && options.wall_thickness >= thinnest)
+      places.fail(prefix + ".radius_variation",
+                  fmt::format("{} makes the tube as thin as {} m, which leaves no bore in a wall of {} m",
+                              radius_variation_, thinnest, options.wall_thickness));
   }
 
   Tube generate(const TubeOptions& options, Random& random) const override {
     Tube tube = draw(options, random);
-    while (least_bend_radius(tube) < options.radius) tube = draw(options, random);
+    while (least_bend_radius(tube) < thickest(options)) tube = draw(options, random);
     return tube;
   }
 
@@ -146,11 +161,29 @@ class Curve : public CopiedShape<Curve> {
     tube.nodes = {Vec3::Zero()};
     append_path(0, resample(line, end_length(options), cylinder_length_max_), tube);
     scale(tube.nodes, length_ / tube.length());  // chords are shorter than arcs
+    if (radius_variation_ > 0.0) vary_radius(options, lengths, random, tube);
     return tube;
   }
 
+  /// Each cylinder gets the radius at its middle.
+  void vary_radius(const TubeOptions& options, const std::vector<double>& lengths, Random& random, Tube& tube) const {
+    std::vector<double> radii;
+    for (std::size_t i = 0; i <= lengths.size(); ++i)
+      radii.push_back(options.radius * random.uniform(1.0 - radius_variation_, 1.0 + radius_variation_));
+    double along = 0.0;
+    for (Cylinder& cylinder : tube.cylinders) {
+      const double length = tube.length(cylinder);
+      cylinder.radius = radius_along(radii, lengths, along + 0.5 * length);
+      along += length;
+    }
+  }
+
+  double thickest(const TubeOptions& options) const { return options.radius * (1.0 + radius_variation_); }
+
   /// A joint's sphere would stick out of a flat end that is nearer than the tube's radius (and a little for the bend).
-  double end_length(const TubeOptions& options) const { return std::max(1.05 * options.radius, cylinder_length_max_); }
+  double end_length(const TubeOptions& options) const {
+    return std::max(1.05 * thickest(options), cylinder_length_max_);
+  }
 
   /// The radius of curvature, metres, of the tightest arc, or where a B-spline's shortest sides meet at the largest
   /// angle. Beside longer sides, near its ends, a spline may bend more tightly.
@@ -169,6 +202,7 @@ class Curve : public CopiedShape<Curve> {
   int section_count_max_ = 6;
   double bend_angle_min_deg_ = 10.0;
   double bend_angle_max_deg_ = 60.0;
+  double radius_variation_ = 0.0;       ///< of the radius
   double cylinder_length_max_ = 0.005;  ///< metres
 };
 

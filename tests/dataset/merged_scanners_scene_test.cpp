@@ -1,0 +1,97 @@
+// Data sets of several scanners, as a user makes and uses them.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "dataset/program.hpp"
+#include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/scene/scene_json.hpp"
+
+namespace tubebin::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+std::string two_scanners(const std::string& more = "") {
+  return "set: Q\nseed: 5\ntubes: [3]\ncases: 1\n"
+         "scanners:\n"
+         "  - {width: 640, height: 400}\n"
+         "  - {width: 640, height: 400, position: [0.9, 0, 1.7], rotation_deg: [0, 28, 0], effects: {lateral_noise: 0.1}}\n" +
+         more;
+}
+
+class MergedScanners : public ::testing::Test {
+ protected:
+  ProgramResult generate(const std::string& yaml) {
+    write_text(folder_ / "config.yaml", yaml);
+    return run_generate_dataset({folder_ / "config.yaml", "--output", folder_ / "data"});
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(MergedScanners, AreVerifiedModelledAndEvaluated) {
+  for (const char* format : {"pcd_binary", "pcd_compressed", "pcd_ascii", "ply_binary"}) {
+    fs::remove_all(folder_ / "data");
+    const ProgramResult made =
+        generate(two_scanners(std::string("output: {clean_cloud: true, format: ") + format + "}\n"));
+    ASSERT_EQ(made.exit_code, 0) << made.error;
+    const ProgramResult verified = run_generate_dataset({"--verify", folder_ / "data"});
+    EXPECT_EQ(verified.exit_code, 0) << verified.out << verified.error;
+  }
+  const std::string scene = folder_ / "data/Q3/001";
+  const SceneRecord record = read_scene_json(scene + "/scene.json");
+  ASSERT_EQ(record.scene.further_scanners.size(), 1U);
+  EXPECT_EQ(record.scene.further_scanners[0].position, Vec3(0.9, 0, 1.7));
+  EXPECT_EQ(record.scene.further_scanners[0].effects.lateral_noise, 0.1);
+  EXPECT_EQ(format_scene_json(record), read_text(scene + "/scene.json"));
+  const Cloud cloud = read_cloud(scene + "/cloud.ply");
+  EXPECT_EQ(std::ranges::count(cloud.sources, 0U) + std::ranges::count(cloud.sources, 1U),
+            static_cast<std::ptrdiff_t>(cloud.size()));
+  EXPECT_GT(std::ranges::count(cloud.sources, 1U), 1000);
+
+  const std::string validate = "python3 " TUBEBIN_SOURCE_DIR "/tests/validate_json.py " TUBEBIN_SOURCE_DIR
+                               "/docs/scene.schema.json " +
+                               scene + "/scene.json";
+  const int status = std::system(validate.c_str());
+  EXPECT_TRUE(status == 0 || WEXITSTATUS(status) == 77);
+
+  const ProgramResult modelled = Program({program_path("model_tubes"), folder_ / "data", "--output",
+                                          folder_ / "results", "--keep-clouds", "--quiet"})
+                                     .wait();
+  ASSERT_EQ(modelled.exit_code, 0) << modelled.error;
+  const ProgramResult evaluated = Program({program_path("evaluate"), folder_ / "results", "--format", "json"}).wait();
+  ASSERT_EQ(evaluated.exit_code, 0) << evaluated.error;
+  EXPECT_GT(nlohmann::json::parse(evaluated.out)["groups"][0]["micro_recall"].get<double>(), 0.9);
+  const Cloud filtered = read_cloud(folder_ / "results/Q3/001/centerline_1/filtered.pcd");
+  EXPECT_EQ(filtered.sources.size(), filtered.size());
+}
+
+TEST_F(MergedScanners, ExportsShowTheFirstScannersImage) {
+  ASSERT_EQ(generate(two_scanners()).exit_code, 0);
+  for (const char* format : {"bop", "coco", "npz", "ply", "sdf"}) {
+    const ProgramResult exported = Program({program_path("export_dataset"), folder_ / "data", "--format", format,
+                                            "--output", folder_ / format, "--quiet"})
+                                       .wait();
+    EXPECT_EQ(exported.exit_code, 0) << format << ": " << exported.error;
+  }
+}
+
+TEST_F(MergedScanners, ElementsTakeWhatTheyLeaveOutFromAnIncludedScanner) {
+  write_text(folder_ / "base.yaml", "set: Q\nseed: 5\ntubes: [1]\ncases: 1\nscanner: {width: 320, height: 200}\n");
+  const ProgramResult made = generate("include: base.yaml\nscanners:\n  - {}\n  - {position: [0.1, 0, 2]}\n");
+  ASSERT_EQ(made.exit_code, 0) << made.error;
+  const SceneRecord record = read_scene_json(folder_ / "data/Q1/001/scene.json");
+  EXPECT_EQ(record.scene.scanner.width, 320);
+  EXPECT_EQ(record.scene.further_scanners.at(0).width, 320);
+}
+
+TEST_F(MergedScanners, WhatCannotBeIsNamedWithItsPlace) {
+  EXPECT_THAT(generate("scanners:\n  - {range_min: 3}\n").error, HasSubstr("scanners[0].range_max"));
+  EXPECT_THAT(generate("scanners:\n  - {}\nscanner: {width: 320}\n").error,
+              AllOf(HasSubstr("config.yaml:3"), HasSubstr("scanner")));
+  EXPECT_THAT(generate("scanners:\n  - {wide: 3}\n").error, HasSubstr("config.yaml:2"));
+}
+
+}  // namespace
+}  // namespace tubebin::testing
