@@ -91,6 +91,7 @@ class Parser {
 
     Tube tube;
     node_index_.clear();
+    node_radii_.clear();
     for (std::uint32_t i = 0; i < node_count; ++i) read_node(tube);
     for (std::uint32_t i = 0; i < edge_count; ++i) read_edge(tube);
     check_every_node_is_used(tube);

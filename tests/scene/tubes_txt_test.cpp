@@ -134,6 +134,8 @@ TEST(TubesTxt, RadiiAlongATubeReadBack) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(back.radius_of(back.cylinders[i]), tube.cylinders[i].radius);
   EXPECT_EQ(back.node_radii(), (std::vector<double>{0.012, 0.012, 0.0125, 0.0125}));
   EXPECT_EQ(format_tubes_txt({{back, Pose::Identity()}}), text);
+  const std::string two = format_tubes_txt({{tube, Pose::Identity()}, {tube, Pose::Identity()}});
+  EXPECT_EQ(format_tubes_txt(parse_tubes_txt(two, "a.txt")), two);
 }
 
 TEST(TubesTxt, ErrorsNameLineAndCause) {
