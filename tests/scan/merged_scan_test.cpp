@@ -19,12 +19,12 @@ using testing::sphere_trace;
 
 Scene scene_of_three(std::uint64_t seed) {
   Scene scene = random_scene(6, seed);
-  look_closely(scene.scanner, 200, 120);
+  look_closely(scene.scanner, 120, 76);
   scene.further_scanners.assign(2, scene.scanner);
   scene.further_scanners[0].position = {0.9, -0.1, 1.7};
   scene.further_scanners[0].rotation_deg = {0.0, 28.0, 0.0};
   scene.further_scanners[1].position = {-0.5, 0.6, 1.5};
-  scene.further_scanners[1].rotation_deg = {22.0, -18.0, 40.0};
+  scene.further_scanners[1].rotation_deg = {-22.0, -18.0, 0.0};
   scene.further_scanners[1].region = ScanRegion::tubes;
   return scene;
 }
@@ -58,7 +58,7 @@ TEST(MergedScan, EachPointIsTheFirstSurfaceThatItsScannerSees) {
     const Vec3 point = merged.cloud.points[i].cast<double>();
     ++points_of.at(source);
     if (label > 0) ++tube_points[label - 1];
-    if (i % 7 != 0) continue;
+    if (i % 31 != 0) continue;
     const Eigen::Vector2d pixel = cameras[source].project_from_world(point);
     ASSERT_NEAR(pixel.x() - std::floor(pixel.x()), 0.5, 1e-3);
     ASSERT_NEAR(pixel.y() - std::floor(pixel.y()), 0.5, 1e-3);
@@ -78,7 +78,7 @@ TEST(MergedScan, EachPointIsTheFirstSurfaceThatItsScannerSees) {
         hits += traced.found && (traced.label > 0 || views[source].scanner.region != ScanRegion::tubes);
       }
     EXPECT_EQ(points_of[source], hits) << "source " << source;
-    EXPECT_GT(hits, 500U);
+    EXPECT_GT(hits, 300U);
   }
 }
 

@@ -176,6 +176,8 @@ TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   const json schema = json::parse(read_file(TUBEBIN_SOURCE_DIR "/docs/scene.schema.json"));
   SceneRecord record = make_record(2);
   for (PlacedTube& tube : record.scene.tubes) tube.tube.kind = "pipe";
+  record.scene.further_scanners = {record.scene.scanner};
+  record.further_windows = {record.window};
   record.scene.scanner.effects.projector.enabled = true;  // else the scanner's effects are not there
   const json scene = json::parse(format_scene_json(record));
   const auto keys = [](const json& object) {
