@@ -35,9 +35,9 @@ struct Split {
 
 /// Of the scenes with the same set and number of tubes the same share is held back. The training scenes' order is
 /// random, so that the first of them stand for all.
-Split split_scenes(const CalibrationOptions& options) {
+Split split_scenes(const DatasetFiles& dataset, const CalibrationOptions& options) {
   std::map<std::string, std::vector<CloudFile>> groups;
-  const std::vector<CloudFile> clouds = find_clouds(options.dataset);
+  const std::vector<CloudFile> clouds = find_clouds(dataset);
   for (const CloudFile& cloud : clouds) groups[cloud.scene.substr(0, cloud.scene.find('/'))].push_back(cloud);
   Random random(options.seed);
   Split split;
@@ -59,8 +59,8 @@ Split split_scenes(const CalibrationOptions& options) {
 std::vector<ModelingRun> runs_of(const std::vector<CloudFile>& clouds, ModelingMethod method,
                                  const std::vector<double>& ratios) {
   std::vector<ModelingRun> runs;
-  for (const auto& [scene, path] : clouds)
-    for (const double ratio : ratios) runs.push_back({scene, path, method, ratio});
+  for (const auto& [scene, file] : clouds)
+    for (const double ratio : ratios) runs.push_back({scene, file, method, ratio});
   return runs;
 }
 
@@ -157,7 +157,8 @@ CalibrationReport calibrate_modeler(const CalibrationOptions& options, const Mod
   CalibrationReport report;
   report.parameters = choose_parameters(options, start.modeling.method);
   report.before = setting_of(start, report.parameters);
-  const Split split = split_scenes(options);
+  const DatasetFiles dataset(options.dataset);
+  const Split split = split_scenes(dataset, options);
   report.training_scenes = names_of(split.training);
   report.held_back_scenes = names_of(split.held_back);
 
@@ -168,7 +169,7 @@ CalibrationReport calibrate_modeler(const CalibrationOptions& options, const Mod
       options.budget * static_cast<double>(split.training.size()) + 2.0 * static_cast<double>(split.held_back.size());
   Progress progress(static_cast<std::size_t>(scored * static_cast<double>(options.ratios.size())), "clouds",
                     progress_style);
-  CalibrationTrials trials(folder, options, start, report.parameters, progress);
+  CalibrationTrials trials(folder, options, dataset, start, report.parameters, progress);
   try {
     calibrate(options, start, split, trials, report);
   } catch (const CalibrationStopped& stopped) {

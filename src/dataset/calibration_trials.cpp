@@ -5,7 +5,6 @@
 
 #include "number_fields.hpp"
 #include "stop_note.hpp"
-#include "tubebin/core/atomic_file.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/dataset/manifest.hpp"
 #include "tubebin/evaluation/micro_recall.hpp"
@@ -53,9 +52,10 @@ Setting setting_of(const ModelConfig& config, const std::vector<TunedParameter>&
 }
 
 CalibrationTrials::CalibrationTrials(const std::string& folder, const CalibrationOptions& options,
-                                     const ModelConfig& start, std::vector<TunedParameter> parameters,
-                                     Progress& progress)
+                                     const DatasetFiles& dataset, const ModelConfig& start,
+                                     std::vector<TunedParameter> parameters, Progress& progress)
     : options_(options),
+      dataset_(dataset),
       start_(start),
       parameters_(std::move(parameters)),
       progress_(progress),
@@ -90,8 +90,8 @@ CalibrationTrials::Key CalibrationTrials::key_of(const Setting& setting, const M
 }
 
 std::string CalibrationTrials::cloud_hash(const ModelingRun& run) {
-  std::string& hash = hash_of_cloud_[run.cloud];
-  if (hash.empty()) hash = record_bytes(read_file(run.cloud)).xxh128;
+  std::string& hash = hash_of_cloud_[run.scene];
+  if (hash.empty()) hash = record_bytes(dataset_.read(run.scene, run.cloud)).xxh128;
   return hash;
 }
 
@@ -137,9 +137,9 @@ void CalibrationTrials::find_missing(const std::vector<Trial>& missing) {
 
 /// In a worker process.
 AttemptResult CalibrationTrials::attempt(const Trial& trial) const {
-  const CloudToModel input = read_cloud_to_model(trial.run.cloud);
+  const CloudToModel input = read_cloud_to_model(dataset_, {trial.run.scene, trial.run.cloud});
   if (truth_labels(input).empty())
-    throw_io_error("{}: has no labels, and no colours of a scene.json beside it, to compare with", trial.run.cloud);
+    throw_io_error("{}: has no labels, and no colours of a scene.json beside it, to compare with", input.path);
   const ModelConfig config = run_config(apply_setting(start_, parameters_, trial.setting), trial.run);
   const double recall = micro_recall_of(input, model_cloud(input, config));
   return successful_attempt([recall] { return fmt::format("{}", recall); });
@@ -149,7 +149,8 @@ void CalibrationTrials::keep(const Trial& trial, const JobOutcome& outcome) {
   Json line = Json::parse(trial.key);
   if (!outcome.succeeded) {
     const FailedAttempt& last = outcome.failed.back();
-    if (last.reason == "killed") throw_io_error("{}: {}", trial.run.cloud, last.detail);
+    if (last.reason == "killed")
+      throw_io_error("{}: {}", dataset_.place(trial.run.scene, trial.run.cloud), last.detail);
     line["failed"] = last.reason;
     ++failed_;
   }

@@ -19,8 +19,8 @@ struct CalibrationStopped {
 class CalibrationTrials {
  public:
   /// Reads the journal in `folder`. Throws ConfigError where it is of other options or of another version, and IoError.
-  CalibrationTrials(const std::string& folder, const CalibrationOptions& options, const ModelConfig& start,
-                    std::vector<TunedParameter> parameters, Progress& progress);
+  CalibrationTrials(const std::string& folder, const CalibrationOptions& options, const DatasetFiles& dataset,
+                    const ModelConfig& start, std::vector<TunedParameter> parameters, Progress& progress);
 
   /// Of each setting, its micro-recalls on the runs, in their order. Throws CalibrationStopped.
   std::vector<std::vector<double>> recalls(const std::vector<Setting>& settings, const std::vector<ModelingRun>& runs);
@@ -45,6 +45,7 @@ class CalibrationTrials {
   void keep(const Trial& trial, const JobOutcome& outcome);
 
   const CalibrationOptions& options_;
+  const DatasetFiles& dataset_;
   const ModelConfig& start_;
   std::vector<TunedParameter> parameters_;
   Progress& progress_;
