@@ -128,7 +128,7 @@ double scalar_at(const char* bytes, ScalarType type, bool swapped) {
 std::optional<Role> role_of(std::string_view field_name) {
   constexpr std::pair<std::string_view, Role> kRoles[] = {
       {"x", kX},     {"y", kY},         {"z", kZ},       {"rgb", kPackedColor}, {"rgba", kPackedColor},
-      {"red", kRed}, {"green", kGreen}, {"blue", kBlue}, {"label", kLabel}, {"source", kSource}};
+      {"red", kRed}, {"green", kGreen}, {"blue", kBlue}, {"label", kLabel},     {"source", kSource}};
   for (const auto& [name, role] : kRoles)
     if (name == field_name) return role;
   return std::nullopt;

@@ -38,7 +38,8 @@ std::string format_header(const Cloud& cloud, CloudFormat format) {
 }
 
 std::size_t point_size(const Cloud& cloud) {
-  return kScalarSize * (3 + (cloud.colors.empty() ? 0 : 1) + (cloud.labels.empty() ? 0 : 1) + (cloud.sources.empty() ? 0 : 1));
+  return kScalarSize *
+         (3 + (cloud.colors.empty() ? 0 : 1) + (cloud.labels.empty() ? 0 : 1) + (cloud.sources.empty() ? 0 : 1));
 }
 
 /// Point by point.

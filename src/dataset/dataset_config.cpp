@@ -68,7 +68,8 @@ void describe_scanners(Fields& fields, DatasetConfig& config) {
         describe_with_effects(inner, i < config.scanners.size() ? config.scanners[i] : fresh);
       });
   if (config.scanners.empty())
-    fields.group("scanner", "the virtual 3D scanner", [&](Fields& inner) { describe_with_effects(inner, config.scanner); });
+    fields.group("scanner", "the virtual 3D scanner",
+                 [&](Fields& inner) { describe_with_effects(inner, config.scanner); });
 }
 
 }  // namespace

@@ -89,8 +89,8 @@ void check_sources(const Cloud& cloud, const SceneRecord& scene, Problems& probl
 }
 
 void check_cloud_layout(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
-  const bool is_organized =
-      scene.scene.further_scanners.empty() && scene.scene.scanner.region != ScanRegion::tubes && scene.window.width * scene.window.height > 0;
+  const bool is_organized = scene.scene.further_scanners.empty() && scene.scene.scanner.region != ScanRegion::tubes &&
+                            scene.window.width * scene.window.height > 0;
   if (is_organized && (cloud.width != static_cast<std::uint32_t>(scene.window.width) ||
                        cloud.height != static_cast<std::uint32_t>(scene.window.height)))
     problems.push_back(fmt::format("the cloud has {} x {} points, the window of scene.json {} x {}", cloud.width,

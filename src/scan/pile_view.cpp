@@ -302,7 +302,8 @@ void add(const PileView& view, PileView& sum) {
 PileView view_pile(const Scene& scene) {
   if (scene.further_scanners.empty()) return view_from_one(scene);
   PileView sum = view_from_one(seen_from(scene, 0));
-  for (std::size_t source = 1; source < scene.source_count(); ++source) add(view_from_one(seen_from(scene, source)), sum);
+  for (std::size_t source = 1; source < scene.source_count(); ++source)
+    add(view_from_one(seen_from(scene, source)), sum);
   return sum;
 }
 

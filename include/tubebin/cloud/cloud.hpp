@@ -25,7 +25,7 @@ struct Cloud {
   std::vector<Point> points;
   std::vector<Color> colors;
   std::vector<Label> labels;
-  std::vector<std::uint32_t> sources;  ///< which of several scanners saw each point, from 0
+  std::vector<std::uint32_t> sources;         ///< which of several scanners saw each point, from 0
   Pose world_from_sensor = Pose::Identity();  ///< PCD's VIEWPOINT; that of source 0
 
   std::size_t size() const { return points.size(); }

@@ -80,7 +80,7 @@ struct Contact {
 struct Scene {
   Bin bin;
   Scanner scanner;
-  std::vector<PlacedTube> tubes;  ///< tube k of the files and labels is tubes[k - 1]
+  std::vector<PlacedTube> tubes;               ///< tube k of the files and labels is tubes[k - 1]
   std::vector<Scanner> further_scanners = {};  ///< sources 1, 2, ... of a merged cloud; `scanner` is source 0
 
   std::size_t source_count() const { return 1 + further_scanners.size(); }

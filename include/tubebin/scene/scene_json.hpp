@@ -22,7 +22,7 @@ struct SceneRecord {
   std::vector<std::size_t> tube_pixels;  ///< visible pixels of tube k at [k - 1], all sources together
   std::vector<Contact> contacts;
   std::vector<PixelWindow> further_windows = {};  ///< of the scene's further scanners
-  std::optional<PileRelations> relations;  ///< nothing in files of versions that did not write them
+  std::optional<PileRelations> relations;         ///< nothing in files of versions that did not write them
 };
 
 /// JSON text; equal records give equal bytes. Throws std::invalid_argument where the record contradicts
