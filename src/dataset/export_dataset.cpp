@@ -214,15 +214,15 @@ ExportReport export_dataset(const ExportOptions& options, Progress::Style progre
     if (!is_complete(entries[i])) missing.push_back(i);
   ExportReport report{.scenes = entries.size(), .complete_before = entries.size() - missing.size(), .failed = {}};
   Progress progress(missing.size(), "scenes", progress_style);
-  const PoolEvents events{.on_finished =
-                              [&](const JobOutcome& outcome) {
-                                progress.count_done();
-                                if (outcome.succeeded) return;
-                                const FailedAttempt& last = outcome.failed.back();
-                                report.failed.push_back(fmt::format("{}: {}", entries[outcome.job].name,
-                                                                    last.detail.empty() ? last.reason : last.detail));
-                              },
-                          .on_tick = [&] { progress.show(); }};
+  const PoolEvents events{
+      .on_finished =
+          [&](const JobOutcome& outcome) {
+            progress.count_done();
+            if (outcome.succeeded) return;
+            const FailedAttempt& last = outcome.failed.back();
+            report.failed.push_back(fmt::format("{}: {}", entries[outcome.job].name, last.for_people()));
+          },
+      .on_tick = [&] { progress.show(); }};
   const PoolReport pool = run_jobs(
       missing, {.workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit},
       [&](std::size_t job, int) { return export_one(*format, dataset, options.output, sources[job], entries[job]); },

@@ -45,7 +45,7 @@ std::string describe_failure(const SceneId& id, const JobOutcome& outcome) {
   for (const auto& [reason, count] : reasons) parts.push_back(fmt::format("{} {}", count, reason));
   const FailedAttempt& last = outcome.failed.back();
   return fmt::format("{}: given up after {} attempts ({}); last: {}", id.name(), outcome.failed.size(),
-                     fmt::join(parts, ", "), last.detail.empty() ? last.reason : last.detail);
+                     fmt::join(parts, ", "), last.for_people());
 }
 
 void record_scene(DatasetFolder& folder, const JobOutcome& outcome) {

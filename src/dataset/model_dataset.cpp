@@ -254,7 +254,7 @@ BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config
             if (outcome.succeeded) return;
             const ModelingRun& run = runs[outcome.job];
             const FailedAttempt& last = outcome.failed.back();
-            const std::string why = last.detail.empty() ? last.reason : last.detail;
+            const std::string why = last.for_people();
             report.failed.push_back(fmt::format("{}: {}", run.folder(), why));
             failures +=
                 Json{{"scene", run.scene}, {"method", name_of(run.method)}, {"ratio", run.ratio}, {"error", why}}

@@ -41,6 +41,8 @@ struct FailedAttempt {
   int attempt = 0;     ///< from 0
   std::string reason;  ///< the attempt's own, or "crash", "timeout", "killed"
   std::string detail;
+
+  const std::string& for_people() const { return detail.empty() ? reason : detail; }
 };
 
 struct JobOutcome {
