@@ -162,9 +162,10 @@ TEST_F(Shards, RunTwiceAtOnceDoNoHarm) {
     Program lost(arguments);
     std::this_thread::sleep_for(std::chrono::milliseconds(30 * round));
     Program other(arguments);
-    const ProgramResult end = lost.wait();
-    EXPECT_TRUE(end.exit_code == 0 || end.exit_code == 1) << end.error;  // its unfinished scene may be cleared away
-    EXPECT_EQ(other.wait().exit_code, 0);
+    // Who starts to work last clears away what the other has not finished, and goes through; that may be either.
+    const auto [least, most] = std::minmax({lost.wait().exit_code, other.wait().exit_code});
+    EXPECT_EQ(least, 0);
+    EXPECT_LE(most, 1);
     EXPECT_EQ(generate(data_, {"--shard", "2/2"}).exit_code, 0);
     EXPECT_EQ(run_generate_dataset({"--merge", data_}).exit_code, 0);
     expect_as_of_one_machine(data_);
