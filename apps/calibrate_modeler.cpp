@@ -1,7 +1,7 @@
 /// Tunes the parameters of a modelling method on a data set.
-#include <CLI/CLI.hpp>
 #include <optional>
 
+#include "program.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/dataset/calibration.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
@@ -129,16 +129,5 @@ int main(int argc, char** argv) {
   app.footer(kExamples);
   app.set_version_flag("--version", tool_version());
   add_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-    return run(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
-  } catch (const ConfigError& error) {
-    fmt::print(stderr, "calibrate_modeler: {}\n", error.what());
-    return static_cast<int>(ExitCode::usage);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "calibrate_modeler: {}\n", error.what());
-    return static_cast<int>(ExitCode::failed);
-  }
+  return run_program("calibrate_modeler", app, argc, argv, [&] { return run(arguments); });
 }

@@ -2,13 +2,13 @@
 /// labels.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
 #include <thread>
 
+#include "program.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
@@ -192,16 +192,5 @@ int main(int argc, char** argv) {
   app.footer(kExamples);
   app.set_version_flag("--version", "tubebin " TUBEBIN_VERSION);
   add_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-    return run(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
-  } catch (const ConfigError& error) {
-    fmt::print(stderr, "evaluate: {}\n", error.what());
-    return static_cast<int>(ExitCode::usage);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "evaluate: {}\n", error.what());
-    return static_cast<int>(ExitCode::failed);
-  }
+  return run_program("evaluate", app, argc, argv, [&] { return run(arguments); });
 }

@@ -3,8 +3,7 @@
 
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
-
+#include "program.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/dataset/worker_pool.hpp"
@@ -57,16 +56,5 @@ int main(int argc, char** argv) {
   app.add_option("-o,--output", options.output, "Folder of the export")->required()->type_name("DIR");
   app.add_option("-j,--jobs", options.jobs, "Worker processes")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_flag("-q,--quiet", quiet, "No progress, only errors and results");
-  try {
-    app.parse(argc, argv);
-    return run(options, quiet);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
-  } catch (const ConfigError& error) {
-    fmt::print(stderr, "export_dataset: {}\n", error.what());
-    return static_cast<int>(ExitCode::usage);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "export_dataset: {}\n", error.what());
-    return static_cast<int>(ExitCode::failed);
-  }
+  return run_program("export_dataset", app, argc, argv, [&] { return run(options, quiet); });
 }

@@ -3,10 +3,10 @@
 
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <optional>
 
+#include "program.hpp"
 #include "tubebin/dataset/merge_datasets.hpp"
 #include "tubebin/dataset/shard.hpp"
 #include "tubebin/dataset/timing_table.hpp"
@@ -220,16 +220,5 @@ int main(int argc, char** argv) {
   app.footer(kExamples);
   app.set_version_flag("--version", fmt::format("{} (Embree {})", tool_version(), embree_version()));
   add_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-    return run(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
-  } catch (const ConfigError& error) {
-    fmt::print(stderr, "generate_dataset: {}\n", error.what());
-    return static_cast<int>(ExitCode::usage);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "generate_dataset: {}\n", error.what());
-    return static_cast<int>(ExitCode::failed);
-  }
+  return run_program("generate_dataset", app, argc, argv, [&] { return run(arguments); });
 }

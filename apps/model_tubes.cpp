@@ -1,9 +1,9 @@
 /// Tubes from point clouds: one cloud, or every cloud of a data set.
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
 
+#include "program.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
@@ -213,16 +213,5 @@ int main(int argc, char** argv) {
   app.footer(kExamples);
   app.set_version_flag("--version", tool_version());
   add_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-    return run(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
-  } catch (const ConfigError& error) {
-    fmt::print(stderr, "model_tubes: {}\n", error.what());
-    return static_cast<int>(ExitCode::usage);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "model_tubes: {}\n", error.what());
-    return static_cast<int>(ExitCode::failed);
-  }
+  return run_program("model_tubes", app, argc, argv, [&] { return run(arguments); });
 }

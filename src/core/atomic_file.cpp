@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "core/file_descriptor.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin {
@@ -19,26 +20,6 @@ namespace {
 [[noreturn]] void fail(const std::string& path, const char* problem, int error) {
   throw_io_error("{}: {}: {}", path, problem, std::generic_category().message(error));
 }
-
-/// Owns a file descriptor.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-
-  explicit operator bool() const { return number_ >= 0; }
-  int number() const { return number_; }
-  int close() {
-    const int result = number_ >= 0 ? ::close(number_) : 0;
-    number_ = -1;
-    return result;
-  }
-
- private:
-  int number_;
-};
 
 /// A file under a temporary name, gone at the end of the scope unless it was renamed.
 class TemporaryFile {
@@ -52,11 +33,11 @@ class TemporaryFile {
 
   void write(std::string_view bytes) {
     while (!bytes.empty()) {
-      const ssize_t written = ::write(file_.number(), bytes.data(), bytes.size());
+      const ssize_t written = ::write(file_.get(), bytes.data(), bytes.size());
       if (written >= 0) bytes.remove_prefix(static_cast<std::size_t>(written));
       else if (errno != EINTR) fail(final_path_, "cannot be written", errno);
     }
-    if (::fsync(file_.number()) != 0) fail(final_path_, "cannot be written", errno);
+    if (::fsync(file_.get()) != 0) fail(final_path_, "cannot be written", errno);
     if (file_.close() != 0) fail(final_path_, "cannot be written", errno);
   }
 
@@ -93,15 +74,15 @@ class TemporaryFile {
 
   std::string final_path_;
   std::string temporary_path_;
-  Descriptor file_;
+  FileDescriptor file_;
 };
 
 /// The rename itself is only on the disk once the folder is. Some file systems cannot sync folders; there the
 /// file is as safe as they make it.
 void sync_folder_of(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  const Descriptor descriptor(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!descriptor || ::fsync(descriptor.number()) == 0 || errno == EINVAL || errno == ENOTSUP) return;
+  const FileDescriptor descriptor(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (descriptor.get() < 0 || ::fsync(descriptor.get()) == 0 || errno == EINVAL || errno == ENOTSUP) return;
   fail(path, "its folder cannot be synced", errno);
 }
 
@@ -134,16 +115,16 @@ std::string process_name() {
 
 std::string read_file(const std::string& path) {
   // A named pipe without a writer would block in open() for ever otherwise.
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status;
-  if (!file || ::fstat(file.number(), &status) != 0) fail(path, "cannot be read", errno);
+  if (file.get() < 0 || ::fstat(file.get(), &status) != 0) fail(path, "cannot be read", errno);
   if (S_ISDIR(status.st_mode)) throw_io_error("{}: cannot be read: is a folder", path);
   if (!S_ISREG(status.st_mode)) throw_io_error("{}: cannot be read: is no regular file", path);
 
   std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
   std::size_t filled = 0;
   while (filled < bytes.size()) {
-    const ssize_t count = ::read(file.number(), bytes.data() + filled, bytes.size() - filled);
+    const ssize_t count = ::read(file.get(), bytes.data() + filled, bytes.size() - filled);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail(path, "cannot be read", errno);
     if (count == 0) break;  // the file shrank meanwhile

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/file_descriptor.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin {
@@ -35,17 +36,6 @@ la_ssize_t collect(archive*, void* text, const void* bytes, std::size_t size) {
   return static_cast<la_ssize_t>(size);
 }
 
-/// Closes its file at the end of the scope.
-struct OpenFile {
-  explicit OpenFile(const std::string& path) : number(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  ~OpenFile() {
-    if (number >= 0) ::close(number);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  int number;
-};
-
 }  // namespace
 
 std::vector<TarMember> list_tar(const std::string& path) {
@@ -69,11 +59,11 @@ std::vector<TarMember> list_tar(const std::string& path) {
 }
 
 std::string read_tar_member(const std::string& path, const TarMember& member) {
-  const OpenFile file(path);
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   std::string bytes(member.bytes, '\0');
   for (std::size_t filled = 0; filled < bytes.size();) {
     const ssize_t count =
-        ::pread(file.number, bytes.data() + filled, bytes.size() - filled, static_cast<off_t>(member.offset + filled));
+        ::pread(file.get(), bytes.data() + filled, bytes.size() - filled, static_cast<off_t>(member.offset + filled));
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) throw_io_error("{}: cannot be read: {}", path, std::strerror(errno));
     if (count == 0) throw_io_error("{}: {}: ends after {} of {} bytes", path, member.name, filled, member.bytes);

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <numeric>
 
 #include "calibration_trials.hpp"
+#include "evaluation/statistics.hpp"
 #include "stop_note.hpp"
 #include "tubebin/core/atomic_file.hpp"
-#include "tubebin/core/random.hpp"
+#include "tubebin/core/shuffle.hpp"
 #include "tubebin/dataset/cloud_files.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/dataset/folder_lock.hpp"
@@ -18,16 +18,6 @@ namespace tubebin {
 namespace {
 
 namespace fs = std::filesystem;
-
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-template <typename Value>
-void shuffle(std::vector<Value>& values, Random& random) {
-  for (std::size_t i = values.size(); i > 1; --i)
-    std::swap(values[i - 1], values[static_cast<std::size_t>(random.integer(0, static_cast<int>(i) - 1))]);
-}
 
 struct Split {
   std::vector<CloudFile> training, held_back;

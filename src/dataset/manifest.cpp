@@ -10,7 +10,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "file_descriptor.hpp"
+#include "append_line.hpp"
+#include "core/file_descriptor.hpp"
 #include "tubebin/core/atomic_file.hpp"
 
 namespace tubebin {
@@ -145,19 +146,8 @@ const ManifestRecord* Manifest::find(const std::string& id) const {
 
 void Manifest::append(const ManifestRecord& record) {
   if (path_.empty()) path_ = make_part(folder_, part_name_);
-  const FileDescriptor file(open(path_.c_str(), O_RDWR | (part_name_.empty() ? O_CREAT : 0) | O_CLOEXEC, 0666));
-  const auto fail = [&] { throw_io_error("{}: cannot be written: {}", path_, std::strerror(errno)); };
-  if (file.get() < 0) fail();
-  const std::string line = format_manifest_record(record) + '\n';
-  const auto end = static_cast<off_t>(complete_bytes_);
-  if (ftruncate(file.get(), end) != 0) fail();  // what a kill left after the last complete line
-  errno = ENOSPC;                               // what a short write means
-  if (pwrite(file.get(), line.data(), line.size(), end) != static_cast<ssize_t>(line.size())) {
-    const int cause = errno;
-    if (ftruncate(file.get(), end) == 0) errno = cause;
-    fail();
-  }
-  complete_bytes_ += line.size();
+  complete_bytes_ =
+      append_line(path_, part_name_.empty() ? O_CREAT : 0, complete_bytes_, format_manifest_record(record));
   records_[record.id] = record;
 }
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <numeric>
 
-#include "tubebin/core/random.hpp"
+#include "tubebin/core/shuffle.hpp"
 
 namespace tubebin {
 namespace {
@@ -31,8 +31,7 @@ double round_to_digits(double value) {
 std::vector<std::size_t> shuffled(std::size_t count, Random& random) {
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  for (std::size_t i = count; i > 1; --i)
-    std::swap(order[i - 1], order[static_cast<std::size_t>(random.integer(0, static_cast<int>(i) - 1))]);
+  shuffle(order, random);
   return order;
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "file_descriptor.hpp"
+#include "core/file_descriptor.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
 
 namespace tubebin {

@@ -25,7 +25,7 @@ void check_reads_back(const std::string& bytes, const Cloud& cloud, const std::s
   const Cloud read = parse_cloud(bytes, path);
   if (read.points.empty() && cloud.points.empty()) return;  // files have no unique form of no points
   if (read.width != cloud.width || read.height != cloud.height || read.colors != cloud.colors ||
-      read.labels != cloud.labels ||
+      read.labels != cloud.labels || read.sources != cloud.sources ||
       !std::equal(read.points.begin(), read.points.end(), cloud.points.begin(), cloud.points.end(), same_point))
     throw_io_error("{}: does not read back as it was written", path);
 }

@@ -11,7 +11,7 @@
 #include <set>
 #include <vector>
 
-#include "file_descriptor.hpp"
+#include "core/file_descriptor.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
 

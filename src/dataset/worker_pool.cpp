@@ -4,7 +4,6 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -13,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "caught_signals.hpp"
 #include "tubebin/core/error.hpp"
 #include "worker_process.hpp"
 
@@ -32,20 +32,14 @@ class StopSignals {
  public:
   StopSignals() {
     received_signal = 0;
+    caught_.emplace(note_signal, 0);
     sigset_t blocked;
     sigemptyset(&blocked);
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-      struct sigaction action {};
-      sigaction(kSignals[i], nullptr, &previous_actions_[i]);
-      if (previous_actions_[i].sa_handler == SIG_IGN) continue;  // as nohup asks
-      action.sa_handler = note_signal;
-      sigaction(kSignals[i], &action, nullptr);
-      sigaddset(&blocked, kSignals[i]);
-    }
+    for (const int signal : caught_->caught()) sigaddset(&blocked, signal);
     sigprocmask(SIG_BLOCK, &blocked, &previous_mask_);
   }
   ~StopSignals() {
-    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &previous_actions_[i], nullptr);
+    caught_.reset();  // before unblocking, so that a signal that waits goes to whom it belongs
     sigprocmask(SIG_SETMASK, &previous_mask_, nullptr);
   }
   StopSignals(const StopSignals&) = delete;
@@ -55,8 +49,7 @@ class StopSignals {
   int received() const { return received_signal; }
 
  private:
-  static constexpr std::array<int, 3> kSignals = {SIGINT, SIGTERM, SIGHUP};
-  std::array<struct sigaction, kSignals.size()> previous_actions_{};
+  std::optional<CaughtSignals> caught_;
   sigset_t previous_mask_{};
 };
 

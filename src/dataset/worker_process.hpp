@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "file_descriptor.hpp"
+#include "core/file_descriptor.hpp"
 #include "tubebin/dataset/worker_pool.hpp"
 
 namespace tubebin {

@@ -5,7 +5,7 @@
 #include <span>
 #include <tuple>
 
-#include "scan/bin_front.hpp"
+#include "scan/occlusion_counter.hpp"
 #include "scan/solid_outline.hpp"
 #include "tubebin/scan/visibility.hpp"
 
@@ -135,12 +135,7 @@ class DeepestSurface {
 class RowCounter {
  public:
   RowCounter(const Scene& scene, const std::vector<SceneSolids>& tubes, const Camera& camera)
-      : tubes_(tubes),
-        camera_(camera),
-        bin_(scene, camera),
-        bodies_(tubes.size() + 1),
-        pixels_(bodies_ * bodies_, 0),
-        columns_(static_cast<std::size_t>(camera.width())) {
+      : tubes_(tubes), camera_(camera), occlusions_(scene, camera), columns_(static_cast<std::size_t>(camera.width())) {
     view_.amodal_pixels.assign(tubes.size(), 0);
     const DeepestSurface deepest(camera);
     for (const SceneSolids& tube : tubes) {
@@ -160,9 +155,7 @@ class RowCounter {
   }
 
   PileView result() {
-    for (std::size_t i = 0; i < pixels_.size(); ++i)
-      if (pixels_[i] > 0)
-        view_.occlusions.push_back({static_cast<Label>(i % bodies_), static_cast<Label>(i / bodies_), pixels_[i]});
+    view_.occlusions = occlusions_.occlusions();
     return std::move(view_);
   }
 
@@ -194,7 +187,7 @@ class RowCounter {
       ++view_.amodal_pixels[run.label - 1];
     }
     const double deepest = deepest_[run.label - 1][run.solid];
-    for (const BinFront::Part& part : bin_.parts()) {
+    for (const BinFront::Part& part : occlusions_.bin().parts()) {
       const PixelWindow& window = part.window;
       if (part.nearest_depth > deepest || run.row < window.y || run.row >= window.y + window.height) continue;
       for (int i = std::max(run.columns.begin, window.x); i < std::min(run.columns.end, window.x + window.width); ++i)
@@ -229,26 +222,14 @@ class RowCounter {
       here_.clear();
       for (std::int32_t k = column.top; k != kNoLayer; k = layers_[static_cast<std::size_t>(k)].next)
         here_.push_back(layers_[static_cast<std::size_t>(k)].layer);
-      compare(here_, i, row);
+      occlusions_.count(here_, i, row);
     }
     column = {};
   }
 
-  void compare(std::span<const Layer> tubes, int column, int row) {
-    const double deepest = std::ranges::max(tubes, {}, &Layer::depth).depth;
-    const Layer walls = {0, bin_.first_before(deepest, column, row)};
-    for (const Layer& behind : tubes) {
-      if (walls.is_before(behind)) ++pixels_[behind.label * bodies_];
-      for (const Layer& front : tubes)
-        if (front.label != behind.label && front.is_before(behind)) ++pixels_[behind.label * bodies_ + front.label];
-    }
-  }
-
   const std::vector<SceneSolids>& tubes_;
   const Camera& camera_;
-  BinFront bin_;
-  std::size_t bodies_;
-  std::vector<std::size_t> pixels_;           // at behind * bodies_ + front
+  OcclusionCounter occlusions_;
   std::vector<std::vector<double>> deepest_;  // of each tube's solids
   std::vector<Column> columns_;
   std::vector<ListedLayer> layers_;  // of the current row

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "scan/bin_front.hpp"
+#include "scan/occlusion_counter.hpp"
 #include "scan/solid_outline.hpp"
 #include "scan/view_window.hpp"
 #include "tubebin/scene/camera.hpp"
@@ -147,23 +147,10 @@ std::vector<std::vector<SeenPixel>> view_tubes_alone(const Scene& scene) {
 
 std::vector<Occlusion> find_occlusions(const Scene& scene, const std::vector<std::vector<SeenPixel>>& views) {
   const Camera camera(scene.scanner);
-  BinFront bin(scene, camera);
-  const std::size_t bodies = views.size() + 1;
-  std::vector<std::size_t> pixels(bodies * bodies, 0);  // at behind * bodies + front
-  PixelLayers(views).for_each([&](int column, int row, std::span<const Layer> tubes) {
-    const double deepest = std::ranges::max(tubes, {}, &Layer::depth).depth;
-    const Layer walls = {0, bin.first_before(deepest, column, row)};
-    for (const Layer& behind : tubes) {
-      if (walls.is_before(behind)) ++pixels[behind.label * bodies];
-      for (const Layer& front : tubes)
-        if (front.label != behind.label && front.is_before(behind)) ++pixels[behind.label * bodies + front.label];
-    }
-  });
-  std::vector<Occlusion> occlusions;
-  for (std::size_t i = 0; i < pixels.size(); ++i)
-    if (pixels[i] > 0)
-      occlusions.push_back({static_cast<Label>(i % bodies), static_cast<Label>(i / bodies), pixels[i]});
-  return occlusions;
+  OcclusionCounter counter(scene, camera);
+  PixelLayers(views).for_each(
+      [&](int column, int row, std::span<const Layer> tubes) { counter.count(tubes, column, row); });
+  return counter.occlusions();
 }
 
 }  // namespace tubebin

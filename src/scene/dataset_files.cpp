@@ -60,20 +60,23 @@ std::string DatasetFiles::loose_path(const std::string& scene, const std::string
   return dataset_ + "/" + scene + "/" + file;
 }
 
+bool DatasetFiles::is_loose(const std::string& scene, const std::string& file) const {
+  return is_folder_ && fs::exists(loose_path(scene, file));
+}
+
 bool DatasetFiles::has(const std::string& scene, const std::string& file) const {
-  return (is_folder_ && fs::exists(loose_path(scene, file))) || find_packed(scene, file) != nullptr;
+  return is_loose(scene, file) || find_packed(scene, file) != nullptr;
 }
 
 std::string DatasetFiles::read(const std::string& scene, const std::string& file) const {
   const Packed* packed = find_packed(scene, file);
-  if (packed == nullptr || (is_folder_ && fs::exists(loose_path(scene, file))))
-    return read_file(loose_path(scene, file));
+  if (packed == nullptr || is_loose(scene, file)) return read_file(loose_path(scene, file));
   return read_tar_member(packs_[packed->pack], packed->member);
 }
 
 std::string DatasetFiles::place(const std::string& scene, const std::string& file) const {
   const Packed* packed = find_packed(scene, file);
-  if (packed == nullptr || (is_folder_ && fs::exists(loose_path(scene, file)))) return loose_path(scene, file);
+  if (packed == nullptr || is_loose(scene, file)) return loose_path(scene, file);
   return packs_[packed->pack] + ":" + packed_name(scene, file);
 }
 

@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "tubebin/core/shuffle.hpp"
+
 namespace tubebin {
 namespace {
 
@@ -32,13 +34,6 @@ const TubeKind* draw_by_share(const std::vector<TubeKind>& kinds, Random& random
     left -= kind.share;
   }
   return drawn;
-}
-
-/// Fisher and Yates: every order is as likely.
-template <typename T>
-void shuffle(std::vector<T>& values, Random& random) {
-  for (int i = static_cast<int>(values.size()) - 1; i > 0; --i)
-    std::swap(values[static_cast<std::size_t>(i)], values[static_cast<std::size_t>(random.integer(0, i))]);
 }
 
 }  // namespace

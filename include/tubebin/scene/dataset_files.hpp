@@ -44,6 +44,7 @@ class DatasetFiles {
   void add_pack(const std::string& path);
   const Packed* find_packed(const std::string& scene, const std::string& file) const;
   std::string loose_path(const std::string& scene, const std::string& file) const;
+  bool is_loose(const std::string& scene, const std::string& file) const;
 
   std::string dataset_;
   bool is_folder_;

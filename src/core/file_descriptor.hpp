@@ -15,10 +15,13 @@ class FileDescriptor {
     std::swap(descriptor_, other.descriptor_);
     return *this;
   }
-  ~FileDescriptor() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
+  ~FileDescriptor() { close(); }
   int get() const { return descriptor_; }
+  /// What close() of the system returns; some file systems tell only then that a write failed.
+  int close() {
+    const int descriptor = std::exchange(descriptor_, -1);
+    return descriptor >= 0 ? ::close(descriptor) : 0;
+  }
 
  private:
   int descriptor_;

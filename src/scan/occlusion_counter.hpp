@@ -1,0 +1,28 @@
+// Who covers whom, counted pixel by pixel.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scan/bin_front.hpp"
+#include "tubebin/scene/pile_relations.hpp"
+
+namespace tubebin {
+
+class OcclusionCounter {
+ public:
+  OcclusionCounter(const Scene& scene, const Camera& camera);
+
+  const BinFront& bin() const { return bin_; }
+  /// `tubes`: all that the pixel's ray meets, at least one.
+  void count(std::span<const Layer> tubes, int column, int row);
+  /// Sorted by behind, then front.
+  std::vector<Occlusion> occlusions() const;
+
+ private:
+  BinFront bin_;
+  std::size_t bodies_;
+  std::vector<std::size_t> pixels_;  ///< at behind * bodies_ + front
+};
+
+}  // namespace tubebin
