@@ -90,10 +90,10 @@ std::string format_tar_member(const std::string& name, std::string_view bytes) {
   require(archive_write_header(writer.get(), entry.get()) == ARCHIVE_OK);
   require(archive_write_data(writer.get(), bytes.data(), bytes.size()) == static_cast<la_ssize_t>(bytes.size()));
   require(archive_write_finish_entry(writer.get()) == ARCHIVE_OK);
-  std::string member = text;  // without what closing adds
-  archive_write_fail(writer.get());
-  member.resize((member.size() + kBlock - 1) / kBlock * kBlock, '\0');
-  return member;
+  const std::size_t member_bytes = (text.size() + kBlock - 1) / kBlock * kBlock;  // without what closing adds
+  require(archive_write_close(writer.get()) == ARCHIVE_OK);
+  text.resize(member_bytes, '\0');
+  return text;
 }
 
 std::string format_tar_end() { return std::string(2 * kBlock, '\0'); }

@@ -15,7 +15,7 @@ namespace {
 
 using testing::look_closely;
 using testing::random_scene;
-using testing::sphere_trace;
+using testing::SphereTracer;
 
 Scene scene_of_three(std::uint64_t seed) {
   Scene scene = random_scene(6, seed);
@@ -48,9 +48,11 @@ TEST(MergedScan, EachPointIsTheFirstSurfaceThatItsScannerSees) {
   std::vector<std::size_t> points_of(3, 0), tube_points(scene.tubes.size(), 0);
   std::vector<Scene> views;
   std::vector<Camera> cameras;
+  std::vector<SphereTracer> tracers;
   for (std::size_t source = 0; source < 3; ++source) {
     views.push_back(seen_from(scene, source));
     cameras.emplace_back(views.back().scanner);
+    tracers.emplace_back(views.back());
   }
   for (std::size_t i = 0; i < merged.cloud.size(); ++i) {
     const std::uint32_t source = merged.cloud.sources[i];
@@ -62,8 +64,8 @@ TEST(MergedScan, EachPointIsTheFirstSurfaceThatItsScannerSees) {
     const Eigen::Vector2d pixel = cameras[source].project_from_world(point);
     ASSERT_NEAR(pixel.x() - std::floor(pixel.x()), 0.5, 1e-3);
     ASSERT_NEAR(pixel.y() - std::floor(pixel.y()), 0.5, 1e-3);
-    const auto traced = sphere_trace(
-        views[source], cameras[source].direction_in_world(std::floor(pixel.x()) + 0.5, std::floor(pixel.y()) + 0.5));
+    const auto traced = tracers[source].trace(
+        cameras[source].direction_in_world(std::floor(pixel.x()) + 0.5, std::floor(pixel.y()) + 0.5));
     ASSERT_TRUE(traced.found);
     EXPECT_EQ(traced.label, label);
     EXPECT_LT((traced.point - point).norm(), 2e-5);
@@ -74,7 +76,7 @@ TEST(MergedScan, EachPointIsTheFirstSurfaceThatItsScannerSees) {
     std::size_t hits = 0;
     for (int row = 0; row < cameras[source].height(); ++row)
       for (int column = 0; column < cameras[source].width(); ++column) {
-        const auto traced = sphere_trace(views[source], cameras[source].pixel_direction_in_world(column, row));
+        const auto traced = tracers[source].trace(cameras[source].pixel_direction_in_world(column, row));
         hits += traced.found && (traced.label > 0 || views[source].scanner.region != ScanRegion::tubes);
       }
     EXPECT_EQ(points_of[source], hits) << "source " << source;

@@ -36,6 +36,7 @@ TEST_P(PublishedScene, LabelsAgreeWithSphereTracingAlongSilhouettes) {
   const Scan result = scan(scene_);
   const Camera camera(scene_.scanner);
   const Cloud& cloud = result.cloud;
+  const testing::SphereTracer tracer(scene_);
   std::size_t silhouettes = 0, compared = 0, wrong = 0;
   for (std::size_t i = 1; i < cloud.size(); ++i) {
     const bool silhouette = cloud.labels[i] != cloud.labels[i - 1];
@@ -43,7 +44,7 @@ TEST_P(PublishedScene, LabelsAgreeWithSphereTracingAlongSilhouettes) {
     if (!(silhouette && silhouettes % 4 == 0) && i % 501 != 0) continue;
     const int column = result.window.x + static_cast<int>(i % cloud.width);
     const int row = result.window.y + static_cast<int>(i / cloud.width);
-    const auto traced = testing::sphere_trace(scene_, camera.pixel_direction_in_world(column, row));
+    const auto traced = tracer.trace(camera.pixel_direction_in_world(column, row));
     ++compared;
     if (traced.found != is_finite(cloud.points[i]) || (traced.found && traced.label != cloud.labels[i])) ++wrong;
   }

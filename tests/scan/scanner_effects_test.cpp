@@ -14,7 +14,7 @@ namespace {
 
 using testing::look_closely;
 using testing::random_scene;
-using testing::sphere_trace;
+using testing::SphereTracer;
 
 /// An empty bin, so wide that the image shows its floor alone, `distance` below the scanner.
 Scene floor_scene(double distance) {
@@ -212,13 +212,14 @@ TEST(ScannerEffects, ShadowIsWhereTheProjectorSeesSomethingElse) {
   from_projector.scanner.position = scene.scanner.world_from_scanner() * projector.position;
   const Vec3 focus = scene.scanner.world_from_scanner() * Vec3(0, 0, projector.focus_distance);
   const Vec3 axis = (focus - from_projector.scanner.position).normalized();
+  const SphereTracer tracer(from_projector);
   int in_shadow = 0, out_of_field = 0, bright = 0, wrong = 0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
     if (!is_finite(exact.points[i])) continue;
     const Vec3 ray = exact.points[i].cast<double>() - from_projector.scanner.position;
     const double off_axis_deg = degrees(std::acos(ray.normalized().dot(axis)));
     // Beyond the field's corners for sure, or within its narrower half; in between its shape decides.
-    const auto traced = sphere_trace(from_projector, ray);
+    const auto traced = tracer.trace(ray);
     const double miss = traced.found ? (traced.point - exact.points[i].cast<double>()).norm() : 1.0;
     if (off_axis_deg > 7.3) {
       ++out_of_field;
@@ -278,6 +279,7 @@ TEST(ScannerEffects, MixedPixelsLieBetweenTheSurfacesOfTheirFootprint) {
   scene.scanner.effects.mixed_pixels = {.share = 1.0, .footprint = 1.0, .edge_step = 0.01};
   const Cloud mixed = scan(scene, 20).cloud, exact = scan_exactly(scene).cloud;
   const Camera camera(scene.scanner);
+  const SphereTracer tracer(scene);
   int between = 0, wrong = 0;
   for (std::size_t i = 0; i < mixed.size(); ++i) {
     if (!is_finite(mixed.points[i])) continue;
@@ -289,8 +291,8 @@ TEST(ScannerEffects, MixedPixelsLieBetweenTheSurfacesOfTheirFootprint) {
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0.0;
     std::size_t label_of_nearest = 0;
     for (const Eigen::Vector2d& at : {Eigen::Vector2d(0.5, 0.5), {0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
-      const auto traced = sphere_trace(scene, camera.direction_in_world(static_cast<double>(i % 120) + at.x(),
-                                                                        static_cast<double>(i / 120) + at.y()));
+      const auto traced = tracer.trace(
+          camera.direction_in_world(static_cast<double>(i % 120) + at.x(), static_cast<double>(i / 120) + at.y()));
       if (!traced.found) continue;
       const double depth = scene.scanner.position.z() - traced.point.z();
       if (depth < nearest) label_of_nearest = traced.label;

@@ -14,7 +14,7 @@ namespace {
 
 using testing::look_closely;
 using testing::random_scene;
-using testing::sphere_trace;
+using testing::SphereTracer;
 using testing::worst_surface_distance;
 
 constexpr double kSurfaceTolerance = 5e-6;  // metres: what a point may be off its surface
@@ -24,10 +24,11 @@ int expect_agreement_with_sphere_tracing(Scene scene) {
   scene.scanner.region = ScanRegion::full;
   const Cloud cloud = scan(scene).cloud;
   const Camera camera(scene.scanner);
+  const SphereTracer tracer(scene);
   int hits = 0, wrong_labels = 0, wrong_places = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const int column = static_cast<int>(i % cloud.width), row = static_cast<int>(i / cloud.width);
-    const auto traced = sphere_trace(scene, camera.pixel_direction_in_world(column, row));
+    const auto traced = tracer.trace(camera.pixel_direction_in_world(column, row));
     hits += traced.found ? 1 : 0;
     if (traced.found != is_finite(cloud.points[i]) || (traced.found && traced.label != cloud.labels[i])) ++wrong_labels;
     else if (traced.found && (cloud.points[i].cast<double>() - traced.point).norm() > 2e-5) ++wrong_places;
@@ -228,10 +229,11 @@ TEST(Scanner, RegionsShowTheSameSurfaces) {
 /// The smallest window that has all that the image shows, found pixel by pixel without the scanner.
 PixelWindow traced_window(const Scene& scene) {
   const Camera camera(scene.scanner);
+  const SphereTracer tracer(scene);
   int left = camera.width(), right = -1, top = camera.height(), bottom = -1;
   for (int row = 0; row < camera.height(); ++row) {
     for (int column = 0; column < camera.width(); ++column) {
-      if (!sphere_trace(scene, camera.pixel_direction_in_world(column, row)).found) continue;
+      if (!tracer.trace(camera.pixel_direction_in_world(column, row)).found) continue;
       left = std::min(left, column);
       right = std::max(right, column);
       top = std::min(top, row);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "tubebin/cloud/cloud.hpp"
 #include "tubebin/scene/scene.hpp"
@@ -27,36 +29,73 @@ inline double box_distance(const Vec3& p, const Vec3& low, const Vec3& high) {
   return std::min(beyond.maxCoeff(), 0.0) + beyond.cwiseMax(0.0).norm();
 }
 
-/// Of the union of a tube's cylinders and joint spheres, thinner by `wall`; free ends are longer by `excess`.
-/// Negative inside; exact outside the union and on its surface.
-inline double union_distance(const Vec3& p, const PlacedTube& placed, double wall, double excess) {
-  const Tube& tube = placed.tube;
-  const std::vector<double> radii = tube.node_radii();
-  const std::vector<int> degrees = tube.node_degrees();
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Cylinder& cylinder : tube.cylinders) {
-    const Vec3 a = placed.node_in_world(cylinder.node_a), b = placed.node_in_world(cylinder.node_b);
-    const Vec3 beyond = excess * (b - a).normalized();
+/// The union of a tube's cylinders and joint spheres, in the world, thinner by `wall`; free ends are longer by `excess`.
+class TubeUnion {
+ public:
+  TubeUnion(const PlacedTube& placed, double wall, double excess) {
+    const Tube& tube = placed.tube;
+    const std::vector<double> radii = tube.node_radii();
+    const std::vector<int> degrees = tube.node_degrees();
     const auto is_free = [&](int node) { return degrees[static_cast<std::size_t>(node)] == 1; };
-    nearest = std::min(
-        nearest, cylinder_distance(p, is_free(cylinder.node_a) ? Vec3(a - beyond) : a,
-                                   is_free(cylinder.node_b) ? Vec3(b + beyond) : b, tube.radius_of(cylinder) - wall));
+    for (const Cylinder& cylinder : tube.cylinders) {
+      const Vec3 a = placed.node_in_world(cylinder.node_a), b = placed.node_in_world(cylinder.node_b);
+      const Vec3 beyond = excess * (b - a).normalized();
+      rods_.push_back({is_free(cylinder.node_a) ? Vec3(a - beyond) : a, is_free(cylinder.node_b) ? Vec3(b + beyond) : b,
+                       tube.radius_of(cylinder) - wall});
+    }
+    for (std::size_t i = 0; i < degrees.size(); ++i)
+      if (degrees[i] != 1) balls_.push_back({placed.node_in_world(static_cast<int>(i)), radii[i] - wall});
   }
-  for (std::size_t i = 0; i < degrees.size(); ++i)
-    if (degrees[i] != 1)
-      nearest = std::min(nearest, (p - placed.node_in_world(static_cast<int>(i))).norm() - radii[i] + wall);
-  return nearest;
-}
 
-/// As union_distance, of the tube with its bore taken out: a lower bound of the distance. A bore that ends beyond its
-/// tube is the same bore, and has no surface in the opening.
-inline double tube_distance(const Vec3& p, const PlacedTube& placed) {
-  constexpr double kBeyondTheEnd = 0.001;
-  const Tube& tube = placed.tube;
-  const double outside = union_distance(p, placed, 0.0, 0.0);
-  if (tube.wall_thickness == 0.0) return outside;
-  return std::max(outside, -union_distance(p, placed, tube.wall_thickness, kBeyondTheEnd));
-}
+  /// Negative inside; exact outside the union and on its surface.
+  double distance(const Vec3& p) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Rod& rod : rods_) nearest = std::min(nearest, cylinder_distance(p, rod.a, rod.b, rod.radius));
+    for (const Ball& ball : balls_) nearest = std::min(nearest, (p - ball.center).norm() - ball.radius);
+    return nearest;
+  }
+
+ private:
+  struct Rod {
+    Vec3 a, b;
+    double radius;
+  };
+  struct Ball {
+    Vec3 center;
+    double radius;
+  };
+  std::vector<Rod> rods_;
+  std::vector<Ball> balls_;
+};
+
+/// The union with its bore taken out. A bore that ends beyond its tube is the same bore, and has no surface in the
+/// opening.
+class TubeSolid {
+ public:
+  explicit TubeSolid(const PlacedTube& placed) : outside_(placed, 0.0, 0.0) {
+    constexpr double kBeyondTheEnd = 0.001;
+    if (placed.tube.wall_thickness > 0.0) bore_.emplace(placed, placed.tube.wall_thickness, kBeyondTheEnd);
+    for (const Vec3& node : placed.tube.nodes) center_ += placed.world_from_tube * node;
+    center_ /= static_cast<double>(placed.tube.nodes.size());
+    const double widest = std::ranges::max(placed.tube.node_radii());
+    for (const Vec3& node : placed.tube.nodes)  // an end's rim is nearer than a ball about the end is
+      reach_ = std::max(reach_, (placed.world_from_tube * node - center_).norm() + widest);
+  }
+
+  /// Negative inside; a lower bound of the distance to the surface.
+  double distance(const Vec3& p) const {
+    const double outside = outside_.distance(p);
+    return bore_ ? std::max(outside, -bore_->distance(p)) : outside;
+  }
+  /// What distance() is at least, outside: the way to a ball around the tube.
+  double least_distance(const Vec3& p) const { return (p - center_).norm() - reach_; }
+
+ private:
+  TubeUnion outside_;
+  std::optional<TubeUnion> bore_;
+  Vec3 center_ = Vec3::Zero();
+  double reach_ = 0.0;
+};
 
 /// The bin is what is left of its outer block when the space inside and above the floor is taken out; the
 /// distance to it is exact outside and on the surface.
@@ -68,46 +107,64 @@ inline double bin_distance(const Vec3& p, const Bin& bin) {
   return std::min(walls, box_distance(p, {-x - w, -y - w, -w}, {x + w, y + w, 0.0}));
 }
 
-inline double distance_to(const Vec3& p, const Scene& scene, Label label) {
-  return label == 0 ? bin_distance(p, scene.bin) : tube_distance(p, scene.tubes[label - 1]);
-}
-
 struct TracedHit {
   bool found = false;
   Label label = 0;
   Vec3 point = Vec3::Zero();
 };
 
+class SphereTracer {
+ public:
+  explicit SphereTracer(const Scene& scene)
+      : bin_(scene.bin), scanner_(scene.scanner), tubes_(scene.tubes.begin(), scene.tubes.end()) {}
+
+  double distance_to(const Vec3& p, Label label) const {
+    return label == 0 ? bin_distance(p, bin_) : tubes_[label - 1].distance(p);
+  }
+
+  /// Walks from depth range_min to range_max + 1e-9, never farther than to the nearest surface. `direction`, in
+  /// world axes, has depth one. A ray that passes a surface within 1e-9 m counts as a hit.
+  TracedHit trace(const Vec3& direction) const {
+    constexpr double kContact = 1e-9;
+    const double speed = direction.norm();
+    for (double depth = scanner_.range_min; depth <= scanner_.range_max + 1e-9;) {
+      const Vec3 p = scanner_.position + depth * direction;
+      const auto [distance, label] = nearest_surface(p);
+      if (distance < kContact) return {true, label, p};
+      depth += distance / speed;
+    }
+    return {};
+  }
+
+ private:
+  struct Nearest {
+    double distance;
+    Label label;
+  };
+
+  Nearest nearest_surface(const Vec3& p) const {
+    Nearest nearest = {std::abs(distance_to(p, 0)), 0};
+    for (Label label = 1; label <= tubes_.size(); ++label) {
+      if (tubes_[label - 1].least_distance(p) >= nearest.distance) continue;
+      const double distance = std::abs(distance_to(p, label));
+      if (distance < nearest.distance) nearest = {distance, label};
+    }
+    return nearest;
+  }
+
+  Bin bin_;
+  Scanner scanner_;
+  std::vector<TubeSolid> tubes_;
+};
+
 /// The largest distance, in metres, of a finite point from the surface that its label names.
 inline double worst_surface_distance(const Scene& scene, const Cloud& cloud) {
+  const SphereTracer tracer(scene);
   double worst = 0.0;
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (is_finite(cloud.points[i]))
-      worst = std::max(worst, std::abs(distance_to(cloud.points[i].cast<double>(), scene, cloud.labels[i])));
+      worst = std::max(worst, std::abs(tracer.distance_to(cloud.points[i].cast<double>(), cloud.labels[i])));
   return worst;
-}
-
-/// Walks from depth range_min to range_max + 1e-9, never farther than to the nearest surface. `direction`, in
-/// world axes, has depth one. A ray that passes a surface within 1e-9 m counts as a hit.
-inline TracedHit sphere_trace(const Scene& scene, const Vec3& direction) {
-  constexpr double kContact = 1e-9;
-  const double speed = direction.norm();
-  double depth = scene.scanner.range_min;
-  while (depth <= scene.scanner.range_max + 1e-9) {
-    const Vec3 p = scene.scanner.position + depth * direction;
-    double nearest = std::numeric_limits<double>::infinity();
-    Label label = 0;
-    for (Label k = 0; k <= scene.tubes.size(); ++k) {
-      const double distance = std::abs(distance_to(p, scene, k));
-      if (distance < nearest) {
-        nearest = distance;
-        label = k;
-      }
-    }
-    if (nearest < kContact) return {true, label, p};
-    depth += nearest / speed;
-  }
-  return {};
 }
 
 }  // namespace tubebin::testing
