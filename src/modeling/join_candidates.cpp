@@ -51,7 +51,7 @@ double shape_cost(const PieceEnd& a, const PieceEnd& b, double bending_rate, dou
   const Vec3 arrive = angle_vector(along, -b.outward);
   const double energy = 4.0 * (leave.squaredNorm() + leave.dot(arrive) + arrive.squaredNorm()) / length;
   const double rate = bending_rate + (a.direction_variance + b.direction_variance) / length;
-  const double determinant = rate * rate * std::pow(length, 4) / 12.0;
+  const double determinant = rate * rate * length * length * length * length / 12.0;
   // Tubes bend at joints, seldom but at once: tails as of Student's t with 3 degrees of freedom, in 4 dimensions
   // (leaving and arriving, two axes each), log norm Gamma(7/2) / (Gamma(3/2) (3 pi)^2).
   constexpr double kLogNorm = -3.165;
@@ -68,40 +68,71 @@ Eigen::AlignedBox3d box_of(const std::vector<Vec3>& nodes) {
   return box;
 }
 
+/// A pair whose cost has what was looked into so far.
+struct Examined : PossibleJoin {
+  enum class Step : std::uint8_t { shape, occlusion, room } last = Step::shape;
+};
+
 /// What the many bridges ask of each piece.
 struct Obstacle {
   const std::vector<Vec3>& nodes;
-  double length;
   bool is_fragment;
   Eigen::AlignedBox3d box;
-  Vec3 middle;  ///< of a fragment, which is one cylinder
+  Eigen::AlignedBox3d reach;  ///< beyond which a tube is clear of it
+  Vec3 middle;                ///< of a fragment, which is one cylinder
 };
 
 std::vector<Obstacle> obstacles_of(const std::vector<TubePiece>& pieces) {
   std::vector<Obstacle> obstacles;
-  for (const TubePiece& piece : pieces)
+  for (const TubePiece& piece : pieces) {
+    const Eigen::AlignedBox3d box = box_of(piece.nodes);
+    const Vec3 diameter = Vec3::Constant(2.0 * piece.radius);
     obstacles.push_back({.nodes = piece.nodes,
-                         .length = piece.length(),
                          .is_fragment = is_fragment(piece),
-                         .box = box_of(piece.nodes),
+                         .box = box,
+                         .reach = {box.min() - diameter, box.max() + diameter},
                          .middle = 0.5 * (piece.nodes.front() + piece.nodes.back())});
+  }
   return obstacles;
 }
 
-/// Two tubes cannot occupy one place: how far the bridge comes nearer than two radii to another piece's centreline,
-/// against how well its course is known (between its ends, the random walk's deviation q D^3 / 192 at the middle).
-/// Not summed up beyond `limit`.
-double collision_cost(const std::vector<Vec3>& bridge, const std::vector<Obstacle>& obstacles, std::size_t piece_a,
-                      std::size_t piece_b, double bending_rate, double radius, double limit) {
-  const double gap = (bridge.back() - bridge.front()).norm();
-  const double sigma = std::hypot(0.2 * radius, std::sqrt(bending_rate * gap * gap * gap / 192.0));
-  const double reach = 2.0 * radius, step = longest_step(bridge);
-  const Eigen::AlignedBox3d own_box = box_of(bridge);
-  double cost = 0.0;
-  for (std::size_t k = 0; k < obstacles.size(); ++k) {
-    const Obstacle& other = obstacles[k];
-    if (k == piece_a || k == piece_b || other.is_fragment) continue;
-    if (own_box.squaredExteriorDistance(other.box) > reach * reach) continue;
+/// Two tubes cannot occupy one place: how far a bridge comes nearer than two radii to other pieces' centrelines, against
+/// how well its course is known (between its ends, the random walk's deviation q D^3 / 192 at the middle).
+class RoomTest {
+ public:
+  RoomTest(const std::vector<Obstacle>& obstacles, double bending_rate, double radius)
+      : obstacles_(obstacles), bending_rate_(bending_rate), radius_(radius), blockers_(2 * obstacles.size()) {}
+
+  /// Not summed up beyond `limit`.
+  double cost(const std::vector<Vec3>& bridge, const Examined& join, double limit) {
+    const double gap = (bridge.back() - bridge.front()).norm();
+    const double sigma = std::hypot(0.2 * radius_, std::sqrt(bending_rate_ * gap * gap * gap / 192.0));
+    const double step = longest_step(bridge);
+    const Eigen::AlignedBox3d own_box = box_of(bridge);
+    double cost = 0.0;
+    const auto blocks = [&](std::size_t k) {
+      const Obstacle& other = obstacles_[k];
+      if (k == join.end_a / 2 || k == join.end_b / 2 || other.is_fragment || !own_box.intersects(other.reach))
+        return false;
+      const double depth = deepest_overlap(bridge, step, other);
+      cost += 0.5 * depth * depth / (sigma * sigma);
+      return cost > limit;
+    };
+    // What blocked an end's last bridge is the likeliest to block its next.
+    std::size_t& blocker = blockers_[join.end_a];
+    const std::size_t first = blocker;
+    if (blocks(first)) return cost;
+    for (std::size_t k = 0; k < obstacles_.size(); ++k)
+      if (k != first && blocks(k)) {
+        blocker = k;
+        break;
+      }
+    return cost;
+  }
+
+ private:
+  double deepest_overlap(const std::vector<Vec3>& bridge, double step, const Obstacle& other) const {
+    const double reach = 2.0 * radius_;
     double deepest = 0.0;
     for (std::size_t i = 0; i < bridge.size();) {
       double distance = other.box.exteriorDistance(bridge[i]);
@@ -110,11 +141,14 @@ double collision_cost(const std::vector<Vec3>& bridge, const std::vector<Obstacl
       // As many samples on, the bridge can have come nearer than it has been, not before.
       i += static_cast<std::size_t>((distance - (reach - deepest)) / step) + 1;
     }
-    cost += 0.5 * deepest * deepest / (sigma * sigma);
-    if (cost > limit) break;
+    return deepest;
   }
-  return cost;
-}
+
+  const std::vector<Obstacle>& obstacles_;
+  double bending_rate_;
+  double radius_;
+  std::vector<std::size_t> blockers_;  ///< of each end
+};
 
 /// The fragments that the bridge, or the pieces beside it, run through: bits of the same tube's surface.
 std::vector<std::uint32_t> absorbed_fragments(const std::vector<Vec3>& bridge, const PieceEnd& a, const PieceEnd& b,
@@ -123,9 +157,11 @@ std::vector<std::uint32_t> absorbed_fragments(const std::vector<Vec3>& bridge, c
   std::vector<Vec3> course = {bridge.front() - radius * a.outward};
   course.insert(course.end(), bridge.begin(), bridge.end());
   course.push_back(bridge.back() - radius * b.outward);
+  const Eigen::AlignedBox3d box = box_of(course);
   std::vector<std::uint32_t> absorbed;
   for (std::uint32_t k = 0; k < obstacles.size(); ++k)
     if (k != piece_a && k != piece_b && obstacles[k].is_fragment &&
+        box.squaredExteriorDistance(obstacles[k].middle) < radius * radius / 4.0 &&
         distance_to_polyline(obstacles[k].middle, course) < radius / 2.0)
       absorbed.push_back(k);
   return absorbed;
@@ -145,30 +181,27 @@ double bounding_volume(const std::vector<PieceEnd>& ends, double radius) {
   return (box.sizes().array() + 2.0 * radius).prod();
 }
 
-/// Two ends that may be joined.
-struct Pair {
-  std::uint32_t end_a, end_b;
-  double cost;  ///< of the bridge's shape and of ends that are seen to be free; with the scan's say, if final
-  bool is_final = false;
-};
+}  // namespace
 
-std::vector<Pair> plausible_pairs(const std::vector<PieceEnd>& ends, const std::vector<Obstacle>& obstacles,
-                                  double bending_rate, const JoinLimits& limits, double radius) {
+std::vector<PossibleJoin> find_possible_joins(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
+                                              double bending_rate, double cost_limit) {
+  std::vector<PossibleJoin> pairs;
+  if (pieces.empty()) return pairs;
+  const double radius = pieces.front().radius;
   const double density = static_cast<double>(ends.size()) / bounding_volume(ends, radius);
-  std::vector<Pair> pairs;
+  std::vector<double> lengths;
+  for (const TubePiece& piece : pieces) lengths.push_back(piece.length());
   for (std::uint32_t a = 0; a < ends.size(); ++a)
     for (std::uint32_t b = a + 1; b < ends.size(); ++b) {
       if (a / 2 == b / 2 || ends[a].is_on_side || ends[b].is_on_side) continue;
-      const double gap = (ends[b].position - ends[a].position).norm();
-      if (obstacles[a / 2].length + obstacles[b / 2].length + gap > limits.length) continue;
       const double cost = shape_cost(ends[a], ends[b], bending_rate, radius, density) +
                           kEmptyCost * (ends[a].seen_free + ends[b].seen_free);
-      if (cost < limits.cost) pairs.push_back({.end_a = a, .end_b = b, .cost = cost});
+      if (!(cost < cost_limit)) continue;
+      const double gap = (ends[b].position - ends[a].position).norm();
+      pairs.push_back({.end_a = a, .end_b = b, .cost = cost, .length = lengths[a / 2] + lengths[b / 2] + gap});
     }
   return pairs;
 }
-
-}  // namespace
 
 bool is_fragment(const TubePiece& piece) { return piece.length() < 2.0 * piece.radius; }
 
@@ -218,32 +251,39 @@ std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, cons
 }
 
 std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
-                                                const OcclusionTest& occlusion, double bending_rate,
-                                                const JoinLimits& limits) {
+                                                const std::vector<PossibleJoin>& pairs, const OcclusionTest& occlusion,
+                                                double bending_rate, const JoinLimits& limits) {
   std::vector<JoinCandidate> candidates;
   if (pieces.empty()) return candidates;
   const double radius = pieces.front().radius;
   const std::vector<Obstacle> obstacles = obstacles_of(pieces);
-  std::vector<Pair> queue = plausible_pairs(ends, obstacles, bending_rate, limits, radius);
+  RoomTest room(obstacles, bending_rate, radius);
+  std::vector<Examined> queue;
+  for (const PossibleJoin& pair : pairs)
+    if (pair.cost < limits.cost && !(pair.length > limits.length)) queue.push_back({pair});
   // Best first: a pair's cost only grows as it is looked into, so most pairs need no look at all.
-  const auto later = [](const Pair& x, const Pair& y) {
+  const auto later = [](const Examined& x, const Examined& y) {
     return std::tie(x.cost, x.end_a, x.end_b) > std::tie(y.cost, y.end_a, y.end_b);
   };
   std::make_heap(queue.begin(), queue.end(), later);
   std::vector<std::size_t> joins_of_end(ends.size(), 0);
   while (!queue.empty()) {
     std::pop_heap(queue.begin(), queue.end(), later);
-    Pair pair = queue.back();
+    Examined pair = queue.back();
     queue.pop_back();
     const std::uint32_t a = pair.end_a, b = pair.end_b;
     if (joins_of_end[a] >= limits.joins_per_end && joins_of_end[b] >= limits.joins_per_end) continue;
     auto bridge = bridge_between(ends[a], ends[b], radius);
-    if (!pair.is_final) {
-      pair.cost += empty_cost(bridge, occlusion, radius, limits.cost - pair.cost);
+    if (pair.last != Examined::Step::room) {
+      const double limit = limits.cost - pair.cost;
+      if (pair.last == Examined::Step::shape) {
+        pair.cost += empty_cost(bridge, occlusion, radius, limit);
+        pair.last = Examined::Step::occlusion;
+      } else {
+        pair.cost += room.cost(bridge, pair, limit);
+        pair.last = Examined::Step::room;
+      }
       if (!(pair.cost < limits.cost)) continue;
-      pair.cost += collision_cost(bridge, obstacles, a / 2, b / 2, bending_rate, radius, limits.cost - pair.cost);
-      if (!(pair.cost < limits.cost)) continue;
-      pair.is_final = true;
       queue.push_back(pair);
       std::push_heap(queue.begin(), queue.end(), later);
       continue;

@@ -50,7 +50,7 @@ bool OcclusionTest::in_bin_solid(const Vec3& point) const {
 StretchEvidence OcclusionTest::around(const Vec3& center, const Vec3& direction) const {
   if (in_bin_solid(center)) return {.hidden = 0.0, .surface = 0.0, .empty = 1.0};
   StretchEvidence sum;
-  const Vec3 to_viewpoint = (viewpoint_ - center).normalized();
+  const Vec3 to_viewpoint = viewpoint_ - center;
   const Vec3 up = (to_viewpoint - to_viewpoint.dot(direction) * direction).normalized();
   const Vec3 side = direction.cross(up);
   // Half of the width is clear of what the silhouettes' neighbours cover by chance. Half a radius of tolerance is far

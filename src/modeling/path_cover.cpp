@@ -14,14 +14,16 @@ namespace {
 class PartSolver {
  public:
   PartSolver(std::span<const PathCandidate> candidates, std::vector<std::uint32_t> items,
-             std::vector<std::uint32_t> open, std::size_t item_count, std::size_t place_count, std::size_t node_limit)
+             std::vector<std::uint32_t> open, std::size_t item_count,
+             std::span<const std::vector<std::uint32_t>> excluded_by, std::size_t node_limit)
       : candidates_(candidates),
+        excluded_by_(excluded_by),
         items_(std::move(items)),
         open_(std::move(open)),
         nodes_left_(node_limit),
         price_(item_count, 0.0),
         covered_(item_count, false),
-        exclusions_(place_count, 0),
+        exclusions_(excluded_by.size(), 0),
         candidates_of_item_(item_count) {
     for (const std::uint32_t i : items_) price_[i] = std::numeric_limits<double>::infinity();
     for (const std::uint32_t c : open_)
@@ -56,13 +58,17 @@ class PartSolver {
 
   void choose(std::uint32_t c) {
     for (const std::uint32_t item : candidates_[c].items) covered_[item] = true;
-    for (const std::uint32_t place : candidates_[c].excludes) ++exclusions_[place];
+    count_exclusions(c, 1);
     chosen_.push_back(c);
   }
   void take_back() {
     for (const std::uint32_t item : candidates_[chosen_.back()].items) covered_[item] = false;
-    for (const std::uint32_t place : candidates_[chosen_.back()].excludes) --exclusions_[place];
+    count_exclusions(chosen_.back(), -1);
     chosen_.pop_back();
+  }
+  void count_exclusions(std::uint32_t c, int times) {
+    for (const std::uint32_t place : candidates_[c].places)
+      for (const std::uint32_t excluded : excluded_by_[place]) exclusions_[excluded] += times;
   }
 
   void keep_if_best(double cost) {
@@ -73,12 +79,15 @@ class PartSolver {
 
   /// A cover: the candidates that cost least against their items' prices first.
   void take_greedily() {
-    std::vector<std::pair<double, std::uint32_t>> order;
-    for (const std::uint32_t c : open_) order.emplace_back(reduced_cost(c), c);
-    std::sort(order.begin(), order.end());
+    std::vector<std::pair<double, std::uint32_t>> queue;
+    for (const std::uint32_t c : open_) queue.emplace_back(reduced_cost(c), c);
+    std::make_heap(queue.begin(), queue.end(), std::greater<>());
     double cost = 0.0;
     std::size_t held = 0;
-    for (const auto& [reduced, c] : order) {
+    while (held < items_.size() && !queue.empty()) {
+      std::pop_heap(queue.begin(), queue.end(), std::greater<>());
+      const std::uint32_t c = queue.back().second;
+      queue.pop_back();
       if (!fits(c)) continue;
       choose(c);
       cost += candidates_[c].cost;
@@ -168,11 +177,12 @@ class PartSolver {
   }
 
   std::span<const PathCandidate> candidates_;
+  std::span<const std::vector<std::uint32_t>> excluded_by_;
   std::vector<std::uint32_t> items_, open_;
   std::size_t nodes_left_;
   std::vector<double> price_;
   std::vector<bool> covered_;
-  std::vector<int> exclusions_;                                 ///< how many of the chosen exclude a place
+  std::vector<int> exclusions_;                                 ///< of each place: how many of the chosen exclude it
   std::vector<std::vector<std::uint32_t>> candidates_of_item_;  ///< the promising ones, cheapest first
   std::vector<std::uint32_t> chosen_, best_;
   double best_cost_ = std::numeric_limits<double>::infinity();
@@ -182,7 +192,8 @@ class PartSolver {
 }  // namespace
 
 std::vector<std::uint32_t> cheapest_path_cover(std::size_t item_count, std::span<const PathCandidate> candidates,
-                                               std::size_t place_count, std::size_t node_limit) {
+                                               std::span<const std::vector<std::uint32_t>> excluded_by,
+                                               std::size_t node_limit) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
   for (const PathCandidate& candidate : candidates)
     for (const std::uint32_t item : candidate.items) links.emplace_back(candidate.items.front(), item);
@@ -197,7 +208,7 @@ std::vector<std::uint32_t> cheapest_path_cover(std::size_t item_count, std::span
 
   std::vector<std::uint32_t> cover;
   for (std::size_t part = 0; part < items.size(); ++part) {
-    const auto chosen = PartSolver(candidates, items[part], open[part], item_count, place_count, node_limit).solve();
+    const auto chosen = PartSolver(candidates, items[part], open[part], item_count, excluded_by, node_limit).solve();
     cover.insert(cover.end(), chosen.begin(), chosen.end());
   }
   std::sort(cover.begin(), cover.end());

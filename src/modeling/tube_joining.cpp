@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ext/pb_ds/assoc_container.hpp>
 #include <numeric>
-#include <unordered_map>
+#include <span>
 
 #include "tubebin/core/random.hpp"
 #include "tubebin/modeling/path_cover.hpp"
@@ -29,15 +30,58 @@ constexpr std::size_t kPathLimit = 300;
 
 /// A chain of pieces under construction: enters its last piece at one end and may leave it by the other.
 struct Chain {
-  PathCandidate path;  ///< its items: the pieces in order, then the fragments absorbed
-  std::vector<std::uint32_t> pieces;
-  std::vector<std::uint32_t> joins;  ///< candidates used
-  std::uint32_t first_end = 0;       ///< where the tube starts
-  std::uint32_t last_end = 0;        ///< where it ends so far
-  std::uint64_t key = 0;             ///< the items' keys, xor: the same for the same items in any order (Zobrist 1970)
+  PathCandidate
+      path;  ///< its items: the pieces in order, each followed by the fragments absorbed on the way to it; its
+             ///< places: the joins
+  PathNumbers pieces;
+  std::uint32_t first_end = 0;  ///< where the tube starts
+  std::uint32_t last_end = 0;   ///< where it ends so far
+  std::uint64_t key = 0;        ///< the items' keys, xor: the same for the same items in any order (Zobrist 1970)
   double join_cost = 0.0;
   double length = 0.0;   ///< of pieces and bridges, metres
   double bridged = 0.0;  ///< of bridges alone, metres
+};
+
+/// Samples of a curve, in boxes.
+class BoxedCurve {
+ public:
+  explicit BoxedCurve(const std::vector<Vec3>& samples) : samples_(samples) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (i % kRun == 0) boxes_.emplace_back();
+      boxes_.back().extend(samples[i]);
+      box_.extend(samples[i]);
+    }
+  }
+
+  /// Whether a sample of each are nearer to each other than this.
+  bool comes_nearer(const BoxedCurve& other, double distance) const {
+    const double squared = distance * distance;
+    if (!(box_.squaredExteriorDistance(other.box_) < squared)) return false;
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      if (!(boxes_[i].squaredExteriorDistance(other.box_) < squared)) continue;
+      for (std::size_t j = 0; j < other.boxes_.size(); ++j)
+        if (boxes_[i].squaredExteriorDistance(other.boxes_[j]) < squared && any_nearer(run(i), other.run(j), squared))
+          return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t kRun = 6;
+
+  std::span<const Vec3> run(std::size_t i) const {
+    return std::span(samples_).subspan(i * kRun, std::min(kRun, samples_.size() - i * kRun));
+  }
+  static bool any_nearer(std::span<const Vec3> a, std::span<const Vec3> b, double squared) {
+    for (const Vec3& p : a)
+      for (const Vec3& q : b)
+        if ((p - q).squaredNorm() < squared) return true;
+    return false;
+  }
+
+  const std::vector<Vec3>& samples_;
+  Eigen::AlignedBox3d box_;
+  std::vector<Eigen::AlignedBox3d> boxes_;  ///< of each run of kRun samples
 };
 
 class Joiner {
@@ -51,6 +95,7 @@ class Joiner {
     bending_rate_ = estimate_bending_rate(pieces, radius_);
     ends_ = find_piece_ends(pieces, occlusion, 40.0 * radius_);
     decide_whether_tubes_branch();
+    pairs_ = find_possible_joins(pieces, ends_, bending_rate_, kJoinCostLimit);
     find_joins();
   }
 
@@ -67,18 +112,15 @@ class Joiner {
       chain.first_end = end;
       chain.last_end = end ^ 1U;
       chain.length = lengths_[end / 2];
+      is_taken_.assign(pieces_.size(), false);
+      is_taken_[end / 2] = true;
       extend(chain);
     }
     drop_dominated();
     std::vector<PathCandidate> paths;
-    for (Chain& chain : chains_) {
-      paths.push_back(std::move(chain.path));
-      paths.back().places = chain.joins;
-      for (const std::uint32_t j : chain.joins)
-        paths.back().excludes.insert(paths.back().excludes.end(), collides_[j].begin(), collides_[j].end());
-    }
+    for (const Chain& chain : chains_) paths.push_back(chain.path);
     std::vector<Chain> chosen;
-    for (const std::uint32_t c : cheapest_path_cover(pieces_.size(), paths, joins_.size(), kNodeLimit))
+    for (const std::uint32_t c : cheapest_path_cover(pieces_.size(), paths, collides_, kNodeLimit))
       chosen.push_back(std::move(chains_[c]));
     chains_ = std::move(chosen);
   }
@@ -183,9 +225,7 @@ class Joiner {
     if (chain.first_end < chain.last_end) keep_if_cheapest(chain);
     for (const std::uint32_t j : joins_of_end_[chain.last_end]) {
       const std::uint32_t entered = joins_[j].end_a == chain.last_end ? joins_[j].end_b : joins_[j].end_a;
-      const auto taken = [&](std::uint32_t k) {
-        return std::find(chain.path.items.begin(), chain.path.items.end(), k) != chain.path.items.end();
-      };
+      const auto taken = [&](std::uint32_t k) { return is_taken_[k]; };
       if (taken(entered / 2) || std::any_of(joins_[j].absorbed.begin(), joins_[j].absorbed.end(), taken)) continue;
       if (chain.length + bridge_lengths_[j] + lengths_[entered / 2] > longest()) continue;
       const std::uint32_t left = chain.last_end;
@@ -195,13 +235,14 @@ class Joiner {
     }
   }
 
-  void append(Chain& chain, std::uint32_t join, std::uint32_t entered) const {
+  void append(Chain& chain, std::uint32_t join, std::uint32_t entered) {
     const std::uint32_t piece = entered / 2;
     const auto& absorbed = joins_[join].absorbed;
     chain.pieces.push_back(piece);
-    chain.joins.push_back(join);
+    chain.path.places.push_back(join);
     chain.path.items.push_back(piece);
     chain.path.items.insert(chain.path.items.end(), absorbed.begin(), absorbed.end());
+    mark(piece, absorbed, true);
     chain.key ^= key_of(piece, absorbed);
     chain.last_end = entered ^ 1U;
     chain.join_cost += joins_[join].cost;
@@ -209,17 +250,23 @@ class Joiner {
     chain.bridged += bridge_lengths_[join];
   }
 
-  void take_back(Chain& chain, std::uint32_t join, std::uint32_t left) const {
+  void take_back(Chain& chain, std::uint32_t join, std::uint32_t left) {
     const std::uint32_t piece = chain.pieces.back();
     const auto& absorbed = joins_[join].absorbed;
     chain.pieces.pop_back();
-    chain.joins.pop_back();
+    chain.path.places.pop_back();
     chain.path.items.resize(chain.path.items.size() - 1 - absorbed.size());
+    mark(piece, absorbed, false);
     chain.key ^= key_of(piece, absorbed);
     chain.last_end = left;
     chain.join_cost -= joins_[join].cost;
     chain.length -= bridge_lengths_[join] + lengths_[piece];
     chain.bridged -= bridge_lengths_[join];
+  }
+
+  void mark(std::uint32_t piece, const std::vector<std::uint32_t>& absorbed, bool taken) {
+    is_taken_[piece] = taken;
+    for (const std::uint32_t fragment : absorbed) is_taken_[fragment] = taken;
   }
 
   std::uint64_t key_of(std::uint32_t piece, const std::vector<std::uint32_t>& absorbed) const {
@@ -231,7 +278,7 @@ class Joiner {
   /// Of the chains that hold the same pieces, no best cover needs any but the cheapest.
   void keep_if_cheapest(Chain& chain) {
     chain.path.cost = chain.join_cost + length_cost(chain) + end_cost(chain.first_end) + end_cost(chain.last_end);
-    const auto [entry, added] = chain_of_key_.try_emplace(chain.key, chains_.size());
+    const auto [entry, added] = chain_of_key_.insert({chain.key, chains_.size()});
     if (added) {
       chains_.push_back(chain);
     } else if (chain.path.cost < chains_[entry->second].path.cost) {
@@ -247,11 +294,11 @@ class Joiner {
     };
     const auto better_cut = [&](const Chain& chain) {
       std::uint64_t front = 0;
-      for (std::size_t cut = 0; cut < chain.joins.size(); ++cut) {
+      for (std::size_t cut = 0; cut < chain.path.places.size(); ++cut) {
         front ^= piece_keys_[chain.pieces[cut]];
         double cost = 0.0;
         std::uint64_t between = 0;
-        for (const std::uint32_t fragment : joins_[chain.joins[cut]].absorbed) {
+        for (const std::uint32_t fragment : joins_[chain.path.places[cut]].absorbed) {
           between ^= piece_keys_[fragment];
           cost += cost_of(piece_keys_[fragment]);
         }
@@ -285,7 +332,7 @@ class Joiner {
   }
 
   void find_joins() {
-    joins_ = find_join_candidates(pieces_, ends_, occlusion_, bending_rate_,
+    joins_ = find_join_candidates(pieces_, ends_, pairs_, occlusion_, bending_rate_,
                                   {.cost = cost_limit(), .length = longest(), .joins_per_end = kJoinsPerEnd});
     bridge_lengths_.clear();
     joins_of_end_.assign(ends_.size(), {});
@@ -296,40 +343,22 @@ class Joiner {
     find_colliding_joins();
   }
 
-  /// Two bridges of different tubes cannot occupy one place.
+  /// Two bridges of different tubes cannot occupy one place. Two of one end are no question: only one can be chosen.
   void find_colliding_joins() {
     collides_.assign(joins_.size(), {});
-    std::vector<Eigen::AlignedBox3d> boxes(joins_.size());
-    for (std::size_t i = 0; i < joins_.size(); ++i)
-      for (const Vec3& p : joins_[i].bridge) boxes[i].extend(p);
-    std::vector<double> steps;
-    for (const JoinCandidate& join : joins_) steps.push_back(longest_step(join.bridge));
+    std::vector<BoxedCurve> bridges;
+    for (const JoinCandidate& join : joins_) bridges.emplace_back(join.bridge);
     for (std::uint32_t i = 0; i < joins_.size(); ++i)
       for (std::uint32_t j = 0; j < i; ++j)
-        if (boxes[i].squaredExteriorDistance(boxes[j]) < radius_ * radius_ &&
-            bridges_meet(joins_[i].bridge, joins_[j].bridge, boxes[j], std::max(steps[i], steps[j]))) {
+        // Less than a radius apart is no matter of the bridges' uncertain course.
+        if (!share_an_end(joins_[i], joins_[j]) && bridges[i].comes_nearer(bridges[j], radius_)) {
           collides_[i].push_back(j);
           collides_[j].push_back(i);
         }
   }
 
-  /// Less than a radius apart is no matter of the bridges' uncertain course.
-  bool bridges_meet(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Eigen::AlignedBox3d& box_b,
-                    double longest_step) const {
-    // The next so many samples cannot be nearer than a radius, since none is farther from the one before than a step.
-    const auto skip = [&](double distance) {
-      return static_cast<std::size_t>((distance - radius_) / longest_step) + 1;
-    };
-    for (std::size_t i = 0; i < a.size();) {
-      double nearest = box_b.exteriorDistance(a[i]);
-      for (std::size_t j = 0; nearest < radius_ && j < b.size();) {
-        const double distance = (a[i] - b[j]).norm();
-        if (distance < radius_) return true;
-        j += skip(distance);
-      }
-      i += skip(std::max(nearest, radius_));
-    }
-    return false;
+  static bool share_an_end(const JoinCandidate& i, const JoinCandidate& j) {
+    return i.end_a == j.end_a || i.end_a == j.end_b || i.end_b == j.end_a || i.end_b == j.end_b;
   }
 
   TubePath path_of(const Chain& chain) const {
@@ -342,8 +371,8 @@ class Joiner {
         if (!path.nodes.empty()) path.bridged.push_back(n == 0);
         path.nodes.push_back(nodes[n]);
       }
-      if (k == chain.joins.size()) break;
-      const JoinCandidate& join = joins_[chain.joins[k]];
+      if (k == chain.path.places.size()) break;
+      const JoinCandidate& join = joins_[chain.path.places[k]];
       entered = join.end_a / 2 == chain.pieces[k + 1] ? join.end_a : join.end_b;
     }
     return path;
@@ -358,12 +387,14 @@ class Joiner {
   std::vector<std::uint64_t> piece_keys_;
   std::vector<PieceEnd> ends_;
   bool tubes_branch_ = false;
+  std::vector<PossibleJoin> pairs_;
   std::vector<JoinCandidate> joins_;
   std::vector<double> bridge_lengths_;  ///< of the joins, metres
   std::vector<std::vector<std::uint32_t>> joins_of_end_;
   std::vector<std::vector<std::uint32_t>> collides_;  ///< of each join: those whose bridges take up the same place
   std::vector<Chain> chains_;
-  std::unordered_map<std::uint64_t, std::size_t> chain_of_key_;  ///< while chains are found
+  __gnu_pbds::gp_hash_table<std::uint64_t, std::size_t> chain_of_key_;  ///< while chains are found
+  std::vector<char> is_taken_;  ///< of each piece: by the chain under construction
   std::size_t budget_ = 0;
 };
 

@@ -11,30 +11,35 @@
 namespace tubebin {
 namespace {
 
+using Exclusions = std::vector<std::vector<std::uint32_t>>;  // of each place
+
 /// Gives each candidate from `first` on a place of its own and lets a third of their pairs exclude each other.
-std::size_t exclude_at_random(Random& random, std::vector<PathCandidate>& candidates, std::uint32_t first) {
+Exclusions exclude_at_random(Random& random, std::vector<PathCandidate>& candidates, std::uint32_t first) {
+  Exclusions excluded_by(candidates.size() - first);
   for (std::uint32_t a = first; a < candidates.size(); ++a) {
     candidates[a].places = {a - first};
     for (std::uint32_t b = first; b < a; ++b) {
       if (random.integer(0, 2) > 0) continue;
-      candidates[a].excludes.push_back(b - first);
-      candidates[b].excludes.push_back(a - first);
+      excluded_by[a - first].push_back(b - first);
+      excluded_by[b - first].push_back(a - first);
     }
   }
-  return candidates.size() - first;
+  return excluded_by;
 }
 
-bool any_excluded(const std::vector<PathCandidate>& candidates, const std::vector<std::uint32_t>& chosen) {
-  for (const std::uint32_t a : chosen)
-    for (const std::uint32_t b : chosen)
-      for (const std::uint32_t place : candidates[a].excludes)
-        if (std::find(candidates[b].places.begin(), candidates[b].places.end(), place) != candidates[b].places.end())
-          return true;
-  return false;
+bool any_excluded(const std::vector<PathCandidate>& candidates, const Exclusions& excluded_by,
+                  const std::vector<std::uint32_t>& chosen) {
+  std::set<std::uint32_t> taken;
+  for (const std::uint32_t c : chosen) taken.insert(candidates[c].places.begin(), candidates[c].places.end());
+  return std::any_of(taken.begin(), taken.end(), [&](std::uint32_t place) {
+    const auto& excluded = excluded_by[place];
+    return std::any_of(excluded.begin(), excluded.end(), [&](std::uint32_t other) { return taken.contains(other); });
+  });
 }
 
 /// The cheapest choice of candidates that holds each item once, by trying all.
-double cheapest_by_trying_all(std::size_t item_count, const std::vector<PathCandidate>& candidates) {
+double cheapest_by_trying_all(std::size_t item_count, const std::vector<PathCandidate>& candidates,
+                              const Exclusions& excluded_by) {
   double cheapest = 1e18;
   for (std::uint32_t chosen = 0; chosen < (1u << candidates.size()); ++chosen) {
     std::vector<int> held(item_count, 0);
@@ -47,7 +52,7 @@ double cheapest_by_trying_all(std::size_t item_count, const std::vector<PathCand
       for (const std::uint32_t item : candidates[i].items) ++held[item];
     }
     if (cost < cheapest && std::all_of(held.begin(), held.end(), [](int n) { return n == 1; }) &&
-        !any_excluded(candidates, indices))
+        !any_excluded(candidates, excluded_by, indices))
       cheapest = std::min(cheapest, cost);
   }
   return cheapest;
@@ -57,17 +62,21 @@ TEST(PathCover, IsTheCheapestOfAll) {
   Random random(1);
   for (int trial = 0; trial < 200; ++trial) {
     const std::uint32_t items = static_cast<std::uint32_t>(random.integer(2, 6));
-    std::vector<PathCandidate> candidates;
-    for (std::uint32_t i = 0; i < items; ++i) candidates.push_back({{i}, random.uniform(0.5, 2.0)});
-    for (int k = 0; k < 8; ++k) {
+    std::vector<PathCandidate> candidates(items + 8);
+    for (std::uint32_t i = 0; i < items; ++i) {
+      candidates[i].items = {i};
+      candidates[i].cost = random.uniform(0.5, 2.0);
+    }
+    for (std::uint32_t c = items; c < candidates.size(); ++c) {
       std::set<std::uint32_t> chosen;
       const int length = random.integer(2, 3);
       while (static_cast<int>(chosen.size()) < std::min<int>(length, static_cast<int>(items)))
         chosen.insert(static_cast<std::uint32_t>(random.integer(0, static_cast<int>(items) - 1)));
-      candidates.push_back({{chosen.begin(), chosen.end()}, random.uniform(0.0, 3.0)});
+      candidates[c].items.assign(chosen.begin(), chosen.end());
+      candidates[c].cost = random.uniform(0.0, 3.0);
     }
-    const std::size_t places = exclude_at_random(random, candidates, items);
-    const auto cover = cheapest_path_cover(items, candidates, places, 100000);
+    const Exclusions excluded_by = exclude_at_random(random, candidates, items);
+    const auto cover = cheapest_path_cover(items, candidates, excluded_by, 100000);
     double cost = 0.0;
     std::vector<int> held(items, 0);
     for (const std::uint32_t index : cover) {
@@ -75,15 +84,15 @@ TEST(PathCover, IsTheCheapestOfAll) {
       for (const std::uint32_t item : candidates[index].items) ++held[item];
     }
     EXPECT_TRUE(std::all_of(held.begin(), held.end(), [](int n) { return n == 1; }));
-    EXPECT_FALSE(any_excluded(candidates, cover));
-    EXPECT_NEAR(cost, cheapest_by_trying_all(items, candidates), 1e-9);
+    EXPECT_FALSE(any_excluded(candidates, excluded_by, cover));
+    EXPECT_NEAR(cost, cheapest_by_trying_all(items, candidates, excluded_by), 1e-9);
   }
 }
 
 TEST(PathCover, KeepsApartWhatTakesUpOnePlace) {
-  const std::vector<PathCandidate> candidates = {
-      {{0}, 1.0}, {{1}, 1.0}, {{2}, 1.0}, {{3}, 1.0}, {{0, 1}, 0.1, {0}, {1}}, {{2, 3}, 0.2, {1}, {0}}, {{1, 2}, 9.0}};
-  const auto cover = cheapest_path_cover(4, candidates, 2, 1000);
+  const std::vector<PathCandidate> candidates = {{{0}, 1.0},         {{1}, 1.0},         {{2}, 1.0},   {{3}, 1.0},
+                                                 {{0, 1}, 0.1, {0}}, {{2, 3}, 0.2, {1}}, {{1, 2}, 9.0}};
+  const auto cover = cheapest_path_cover(4, candidates, Exclusions{{1}, {0}}, 1000);
   EXPECT_EQ(std::set<std::uint32_t>(cover.begin(), cover.end()), (std::set<std::uint32_t>{2, 3, 4}));
 }
 

@@ -21,9 +21,16 @@ struct PieceEnd {
   double hidden_reach = 0.0;        ///< how far the tube could go on unseen, metres
 };
 
+/// Two ends that could belong together by their places and directions alone.
+struct PossibleJoin {
+  std::uint32_t end_a = 0, end_b = 0;  ///< end_a < end_b, of different pieces
+  double cost = 0.0;                   ///< nats: -log of how much likelier it is that they do
+  double length = 0.0;                 ///< metres, of the two pieces and the gap between the ends, straight
+};
+
 /// Two ends joined by a bridge that the scanner could not see.
 struct JoinCandidate {
-  std::uint32_t end_a = 0, end_b = 0;   ///< end_a < end_b, of different pieces
+  std::uint32_t end_a = 0, end_b = 0;   ///< as in PossibleJoin
   double cost = 0.0;                    ///< nats: -log of how much likelier the scan is with the join than without
   std::vector<Vec3> bridge;             ///< its centreline, from end_a's position to end_b's
   std::vector<std::uint32_t> absorbed;  ///< fragments that lie on it, which the join explains
@@ -36,16 +43,20 @@ double estimate_bending_rate(const std::vector<TubePiece>& pieces, double radius
 std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion,
                                       double reach_limit);
 
+/// The pairs that cost less than `cost_limit`.
+std::vector<PossibleJoin> find_possible_joins(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
+                                              double bending_rate, double cost_limit);
+
 struct JoinLimits {
   double cost = 0.0;    ///< nats, of a join
   double length = 0.0;  ///< metres, of two pieces and their bridge together
   std::size_t joins_per_end = 0;
 };
 
-/// The pairs of ends whose join the evidence does not rule out, cheapest first: of each end its `joins_per_end` cheapest,
+/// The pairs whose join the scan does not rule out, cheapest first: of each end its `joins_per_end` cheapest,
 /// and those that are among the other end's.
 std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
-                                                const OcclusionTest& occlusion, double bending_rate,
-                                                const JoinLimits& limits);
+                                                const std::vector<PossibleJoin>& pairs, const OcclusionTest& occlusion,
+                                                double bending_rate, const JoinLimits& limits);
 
 }  // namespace tubebin
