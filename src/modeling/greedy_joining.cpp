@@ -101,7 +101,9 @@ std::vector<TubeModel> join_greedily(const std::vector<TubePiece>& pieces, const
   for (std::size_t end = 0; end < partner.size(); ++end) {
     if (partner[end] != kFree || is_done[tube[end / 2]]) continue;
     is_done[tube[end / 2]] = true;
-    tubes.push_back(follow(pieces, partner, end));
+    TubeModel found = follow(pieces, partner, end);
+    // Shorter than it is wide it is no tube, mostly a flat end: its points are left to the tube that they lie on.
+    if (found.length() >= 2.0 * found.radius) tubes.push_back(std::move(found));
   }
   return tubes;
 }

@@ -76,10 +76,15 @@ std::optional<CylinderAxis> search_cylinder(const FilteredCloud& cloud, const Se
 
 /// Sorts the points into the axis's inliers and the rest.
 Segment take_inliers(const FilteredCloud& cloud, const Segment& points, CylinderAxis& axis, double radius,
-                     double band) {
+                     const RegionGrowingOptions& options) {
+  const double band = options.inlier_distance * radius, leaning = std::sin(radians(options.smoothness_deg));
   Segment left, inliers;
-  for (const std::uint32_t i : points)
-    (std::abs(axis.distance(cloud.points[i].cast<double>()) - radius) < band ? inliers : left).push_back(i);
+  for (const std::uint32_t i : points) {
+    // Where the tube bends away, its surface crosses the cylinder's.
+    const bool is_inlier = std::abs(axis.distance(cloud.points[i].cast<double>()) - radius) < band &&
+                           std::abs(cloud.normals[i].cast<double>().dot(axis.direction)) < leaning;
+    (is_inlier ? inliers : left).push_back(i);
+  }
   axis.inliers = std::move(inliers);
   return left;
 }
@@ -107,10 +112,9 @@ std::optional<CylinderAxis> take_cylinder(const FilteredCloud& cloud, Segment& r
                                           const RegionGrowingOptions& options) {
   auto axis = search_cylinder(cloud, remaining, radius, options);
   if (!axis) return std::nullopt;
-  const double band = options.inlier_distance * radius;
-  take_inliers(cloud, remaining, *axis, radius, band);
+  take_inliers(cloud, remaining, *axis, radius, options);
   refine(cloud, *axis, radius);
-  remaining = take_inliers(cloud, remaining, *axis, radius, band);
+  remaining = take_inliers(cloud, remaining, *axis, radius, options);
   if (static_cast<int>(axis->inliers.size()) < options.region_size_min) return std::nullopt;
   return axis;
 }
