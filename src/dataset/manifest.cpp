@@ -1,7 +1,6 @@
 #include "tubebin/dataset/manifest.hpp"
 
 #include <fcntl.h>
-#include <unistd.h>
 #include <xxhash.h>
 
 #include <algorithm>

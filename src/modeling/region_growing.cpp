@@ -195,8 +195,9 @@ TubePiece make_piece(const FilteredCloud& cloud, const CylinderAxis& axis, doubl
 
 void describe(Fields& fields, RegionGrowingOptions& options) {
   fields.integer("neighbors", options.neighbors, {3, 1000}, "", "of a point, looked at for growing");
-  fields.number("smoothness_deg", options.smoothness_deg, {0.1, 90.0}, "degrees",
-                "largest angle between the normals of neighbours in one region");
+  fields.number(
+      "smoothness_deg", options.smoothness_deg, {0.1, 90.0}, "degrees",
+      "largest angle between the normals of neighbours in one region, and of a cylinder's points with its side's");
   fields.number("curvature_max", options.curvature_max, {0.0, 1.0}, "",
                 "surface variation up to which a region grows on from a point");
   fields.integer("region_size_min", options.region_size_min, {3, 1000000}, "points",

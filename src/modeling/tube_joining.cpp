@@ -4,8 +4,8 @@
 #include <cmath>
 #include <ext/pb_ds/assoc_container.hpp>
 #include <numeric>
-#include <span>
 
+#include "modeling/boxed_curve.hpp"
 #include "tubebin/core/random.hpp"
 #include "tubebin/modeling/path_cover.hpp"
 
@@ -40,48 +40,6 @@ struct Chain {
   double join_cost = 0.0;
   double length = 0.0;   ///< of pieces and bridges, metres
   double bridged = 0.0;  ///< of bridges alone, metres
-};
-
-/// Samples of a curve, in boxes.
-class BoxedCurve {
- public:
-  explicit BoxedCurve(const std::vector<Vec3>& samples) : samples_(samples) {
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (i % kRun == 0) boxes_.emplace_back();
-      boxes_.back().extend(samples[i]);
-      box_.extend(samples[i]);
-    }
-  }
-
-  /// Whether a sample of each are nearer to each other than this.
-  bool comes_nearer(const BoxedCurve& other, double distance) const {
-    const double squared = distance * distance;
-    if (!(box_.squaredExteriorDistance(other.box_) < squared)) return false;
-    for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      if (!(boxes_[i].squaredExteriorDistance(other.box_) < squared)) continue;
-      for (std::size_t j = 0; j < other.boxes_.size(); ++j)
-        if (boxes_[i].squaredExteriorDistance(other.boxes_[j]) < squared && any_nearer(run(i), other.run(j), squared))
-          return true;
-    }
-    return false;
-  }
-
- private:
-  static constexpr std::size_t kRun = 6;
-
-  std::span<const Vec3> run(std::size_t i) const {
-    return std::span(samples_).subspan(i * kRun, std::min(kRun, samples_.size() - i * kRun));
-  }
-  static bool any_nearer(std::span<const Vec3> a, std::span<const Vec3> b, double squared) {
-    for (const Vec3& p : a)
-      for (const Vec3& q : b)
-        if ((p - q).squaredNorm() < squared) return true;
-    return false;
-  }
-
-  const std::vector<Vec3>& samples_;
-  Eigen::AlignedBox3d box_;
-  std::vector<Eigen::AlignedBox3d> boxes_;  ///< of each run of kRun samples
 };
 
 class Joiner {

@@ -10,7 +10,7 @@ namespace tubebin {
 
 struct RegionGrowingOptions {
   int neighbors = 20;             ///< of a point, for growing
-  double smoothness_deg = 12.0;   ///< largest angle between neighbours' normals in one region
+  double smoothness_deg = 12.0;   ///< between neighbours' normals in one region, a cylinder's and its points'
   double curvature_max = 0.2;     ///< surface variation up to which a point's neighbours are looked at
   int region_size_min = 20;       ///< points
   int ransac_iterations = 100;    ///< a cylinder
