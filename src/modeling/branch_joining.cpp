@@ -109,8 +109,11 @@ class TreeJoiner {
       grow(tree);
     }
     std::vector<PathCandidate> candidates;
-    for (const Tree& tree : trees_)
-      candidates.push_back({.items = {tree.paths.begin(), tree.paths.end()}, .cost = tree.cost});
+    for (const Tree& tree : trees_) {
+      PathCandidate& candidate = candidates.emplace_back();
+      candidate.items.assign(tree.paths.begin(), tree.paths.end());
+      candidate.cost = tree.cost;
+    }
     std::vector<Tree> chosen;
     for (const std::uint32_t c : cheapest_path_cover(singles_.size(), candidates, {}, kSearchNodeLimit))
       chosen.push_back(trees_[c]);
