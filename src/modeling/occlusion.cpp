@@ -6,20 +6,11 @@
 namespace tubebin {
 namespace {
 
-/// The measured points that can lie in front of or behind a tube: with a known bin, those within its outer walls.
-std::vector<std::uint32_t> points_over_bin(const ModelingInput& input) {
+std::vector<std::uint32_t> measured_points(std::span<const Point> points) {
   std::vector<std::uint32_t> selected;
-  selected.reserve(input.points.size());
-  const Eigen::Isometry3f bin_from_world = input.world_from_bin.inverse().cast<float>();
-  float x_max = std::numeric_limits<float>::infinity(), y_max = x_max;
-  if (input.bin) {
-    x_max = static_cast<float>(input.bin->length / 2.0 + input.bin->wall_thickness);
-    y_max = static_cast<float>(input.bin->width / 2.0 + input.bin->wall_thickness);
-  }
-  for (std::uint32_t i = 0; i < input.points.size(); ++i) {
-    const Point p = bin_from_world * input.points[i];
-    if (std::abs(p.x()) <= x_max && std::abs(p.y()) <= y_max && std::isfinite(p.z())) selected.push_back(i);
-  }
+  selected.reserve(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    if (std::isfinite(points[i].z())) selected.push_back(i);
   return selected;
 }
 
@@ -36,7 +27,7 @@ OcclusionTest::OcclusionTest(const ModelingInput& input, const ViewProjection& p
                              double radius)
     : viewpoint_(projection.viewpoint().cast<double>()),
       radius_(radius),
-      image_(projection, input.points, points_over_bin(input), view_cell(input, projection, spacing)),
+      image_(projection, input.points, measured_points(input.points), view_cell(input, projection, spacing)),
       bin_(input.bin),
       bin_from_world_(input.world_from_bin.inverse()) {}
 

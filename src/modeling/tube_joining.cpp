@@ -15,8 +15,9 @@ namespace {
 /// -log of the part of tube ends that happen to lie hidden in a pile: about a third.
 constexpr double kHiddenEndCost = 1.0;
 /// A tube shorter than it should be can have other reasons than a missed join (a stretch too narrow to segment, a
-/// length that is not common to all): e^-10.
-constexpr double kShortCostLimit = 10.0;
+/// length that is not common to all), one that is longer other reasons than a wrong join (an end that is drawn out
+/// beyond a flat end): e^-10.
+constexpr double kLengthCostLimit = 10.0;
 /// A fragment that no tube explains is as likely chance as not: e^-3.
 constexpr double kFragmentCostLimit = 3.0;
 /// A join is ruled out where the scan is e^9 times likelier without it.
@@ -25,8 +26,8 @@ constexpr double kJoinCostLimit = 9.0;
 constexpr double kClearJoinCost = -2.0;
 constexpr std::size_t kNodeLimit = 2000;
 /// The right join is among an end's cheapest few, or it could not be told from chance anyhow.
-constexpr std::size_t kJoinsPerEnd = 4;
-constexpr std::size_t kPathLimit = 300;
+constexpr std::size_t kJoinsPerEnd = 3;
+constexpr std::size_t kPathLimit = 200;
 
 /// A chain of pieces under construction: enters its last piece at one end and may leave it by the other.
 struct Chain {
@@ -83,11 +84,13 @@ class Joiner {
     chains_ = std::move(chosen);
   }
 
-  /// The lengths of the tubes with both ends in sight, shortest first.
+  /// The lengths of the tubes with both ends in sight, shortest first. Bits of surface have no tube's length.
   std::vector<double> seen_lengths() const {
     std::vector<double> seen;
     for (const Chain& chain : chains_)
-      if (ends_[chain.first_end].seen_free > 0.5 && ends_[chain.last_end].seen_free > 0.5) seen.push_back(chain.length);
+      if (chain.length >= 2.0 * radius_ && ends_[chain.first_end].seen_free > 0.5 &&
+          ends_[chain.last_end].seen_free > 0.5)
+        seen.push_back(chain.length);
     std::sort(seen.begin(), seen.end());
     return seen;
   }
@@ -103,19 +106,19 @@ class Joiner {
       std::size_t last = first;
       double sum = 0.0;
       while (last < seen.size() && seen[last] <= seen[first] + tolerance) sum += seen[last++];
-      const auto longer = static_cast<std::size_t>(std::count_if(
-          lengths_.begin(), lengths_.end(), [&](double length) { return length > seen[first] + tolerance; }));
-      if (last - first >= 2 && last - first > longer && sum > most)
+      if (last - first >= 2 && last - first > count_longer_pieces(seen[first] + tolerance) && sum > most)
         most = sum, common = seen[first + (last - first) / 2];
     }
     return common;
   }
 
-  /// Whether two tubes with both ends in sight have this length.
+  /// Whether two tubes with both ends in sight have this length, and more than there are single pieces longer than it.
   bool is_confirmed(double length) const {
     const std::vector<double> seen = seen_lengths();
-    return std::count_if(seen.begin(), seen.end(),
-                         [&](double other) { return std::abs(other - length) < length_tolerance() / 2.0; }) >= 2;
+    const double tolerance = length_tolerance() / 2.0;
+    const auto as_long = static_cast<std::size_t>(std::count_if(
+        seen.begin(), seen.end(), [&](double other) { return std::abs(other - length) < tolerance; }));
+    return as_long >= 2 && as_long > count_longer_pieces(length + tolerance);
   }
 
   /// Once the tubes' common length is known, joins that complete a tube are likelier and those that exceed it ruled
@@ -151,6 +154,11 @@ class Joiner {
   }
 
  private:
+  std::size_t count_longer_pieces(double than) const {
+    return static_cast<std::size_t>(
+        std::count_if(lengths_.begin(), lengths_.end(), [&](double length) { return length > than; }));
+  }
+
   double longest() const {
     return tube_length_ > 0.0 ? tube_length_ + 5.0 * length_sigma(tube_length_ / 4.0)
                               : std::numeric_limits<double>::infinity();
@@ -170,10 +178,10 @@ class Joiner {
     for (const std::uint32_t end : {chain.first_end, chain.last_end})
       if (ends_[end].seen_free < 0.5) room += ends_[end].hidden_reach + radius_;
     const double sigma = length_sigma(chain.bridged);
-    if (missing < 0.0) return 0.5 * missing * missing / (sigma * sigma);
+    if (missing < 0.0) return std::min(0.5 * missing * missing / (sigma * sigma), kLengthCostLimit);
     const double unexplained = std::max(missing - room, 0.0);
     const bool fragment = chain.pieces.size() == 1 && is_fragment(pieces_[chain.pieces.front()]);
-    return std::min(0.5 * unexplained * unexplained / (sigma * sigma), fragment ? kFragmentCostLimit : kShortCostLimit);
+    return std::min(0.5 * unexplained * unexplained / (sigma * sigma), fragment ? kFragmentCostLimit : kLengthCostLimit);
   }
 
   void extend(Chain& chain) {

@@ -1,0 +1,74 @@
+#include "tubebin/modeling/tube_joining.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "modeling/built_scene.hpp"
+#include "tubebin/modeling/occlusion.hpp"
+
+namespace tubebin {
+namespace {
+
+constexpr double kSpacing = 0.004;  // metres, of a built cloud's points
+
+/// A level sheet of points about `center`.
+void add_sheet(const Vec3& center, double half_size, std::vector<Point>& points) {
+  for (double x = -half_size; x <= half_size; x += kSpacing)
+    for (double y = -half_size; y <= half_size; y += kSpacing)
+      points.push_back((center + Vec3(x, y, 0)).cast<float>());
+}
+
+/// What a scanner 2 m above sees of a floor far below, and of a lid over the middle of the x axis.
+class TubeJoining : public ::testing::Test {
+ protected:
+  TubeJoining() {
+    add_sheet({0, 0, -0.3}, 0.6, points_);
+    add_sheet({0, 0, 0.1}, 0.03, points_);
+  }
+
+  std::vector<double> joined_lengths(const std::vector<TubePiece>& pieces) const {
+    const Pose world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 2});
+    const ModelingInput input{.points = points_, .world_from_sensor = world_from_sensor, .bin = std::nullopt};
+    const OcclusionTest occlusion(input, {world_from_sensor, Point::Zero()}, kSpacing, kRadius);
+    std::vector<double> lengths;
+    for (const TubePath& path : join_pieces(pieces, occlusion, 0.0).paths)
+      lengths.push_back(polyline_length(path.nodes));
+    std::sort(lengths.begin(), lengths.end());
+    return lengths;
+  }
+
+  static TubePiece straight(double y, double x_from, double x_to) {
+    return {.nodes = {{x_from, y, 0}, {(x_from + x_to) / 2, y, 0}, {x_to, y, 0}}, .radius = kRadius, .points = {}};
+  }
+
+ private:
+  std::vector<Point> points_;
+};
+
+TEST_F(TubeJoining, BitsOfSurfaceTellNoCommonLength) {
+  const auto lengths = joined_lengths(
+      {straight(0, -0.25, -0.01), straight(0, 0.01, 0.25), straight(0.3, 0.3, 0.32), straight(-0.3, 0.3, 0.32)});
+  ASSERT_EQ(lengths.size(), 1u);  // bits are no tubes either
+  EXPECT_NEAR(lengths.front(), 0.5, 1e-9);
+}
+
+TEST_F(TubeJoining, AnEndThatIsDrawnOutPreventsNoClearJoin) {
+  const auto lengths = joined_lengths(
+      {straight(0, -0.25, -0.01), straight(0, 0.01, 0.283), straight(0.3, -0.25, 0.25), straight(-0.3, -0.25, 0.25)});
+  ASSERT_EQ(lengths.size(), 3u);
+  EXPECT_NEAR(lengths.back(), 0.533, 1e-9);
+}
+
+TEST(Occlusion, SeesTubesThatHangOverTheWall) {
+  const Scene scene = scene_of({tube_along({{0, 0, 0.22}, {0, 0.4, 0.22}})});
+  const Scan view = scan(scene, 1);
+  const OcclusionTest occlusion(input_of(view.cloud, scene.bin), {view.cloud.world_from_sensor, Point::Zero()}, 0.001,
+                                kRadius);
+  ASSERT_GT(0.3, scene.bin.width / 2.0 + scene.bin.wall_thickness);
+  EXPECT_EQ(occlusion.around({0, 0.3, 0.22}, Vec3::UnitY()).surface, 1.0);
+  EXPECT_EQ(occlusion.around({0.05, 0.3, 0.22}, Vec3::UnitY()).empty, 1.0);
+}
+
+}  // namespace
+}  // namespace tubebin
