@@ -132,8 +132,8 @@ std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, c
   const JoinLimits limits{
       .cost = cost_limit, .length = std::numeric_limits<double>::infinity(), .joins_per_end = kJoinsPerEnd};
   for (const JoinCandidate& join :
-       find_join_candidates(paths, ends, find_possible_joins(paths, ends, around.bending_rate, limits.cost), occlusion,
-                            around.bending_rate, limits))
+       find_join_candidates(paths, ends, find_possible_joins(paths, ends, occlusion, around.bending_rate, limits.cost),
+                            occlusion, around.bending_rate, limits))
     links.push_back({.end = join.end_a,
                      .other = join.end_b / 2,
                      .other_end = join.end_b,

@@ -175,6 +175,37 @@ double empty_cost(const std::vector<Vec3>& bridge, const OcclusionTest& occlusio
   return of_all * occlusion.empty_part(bridge, limit / of_all);
 }
 
+/// Where a tube would go on beyond an end's rim, radii.
+constexpr double kBeyondEnd[] = {0.5, 0.75, 1.0};
+
+/// The part of what lies beyond a bridge's front end, along it, where the scan shows that no tube is.
+double empty_beyond_front(const std::vector<Vec3>& bridge, const OcclusionTest& occlusion, double radius) {
+  double empty = 0.0, walked = 0.0;
+  std::size_t samples = 0;
+  for (std::size_t i = 0; i + 1 < bridge.size() && samples < std::size(kBeyondEnd); ++i) {
+    const Vec3 step = bridge[i + 1] - bridge[i];
+    const double length = step.norm();
+    for (; samples < std::size(kBeyondEnd) && kBeyondEnd[samples] * radius <= walked + length; ++samples) {
+      const double along = (kBeyondEnd[samples] * radius - walked) / length;
+      empty += occlusion.around(bridge[i] + along * step, step / length).empty;
+    }
+    walked += length;
+  }
+  return samples > 0 ? empty / static_cast<double>(samples) : 0.0;
+}
+
+/// What the scan says against a tube that goes on beyond both ends. Where it bends at once, it does so along the bridge
+/// and not straight on; fragments, whose bridges lead anywhere, are not believed to.
+double free_ends_cost(const PieceEnd& a, const PieceEnd& b, const OcclusionTest& occlusion, double radius) {
+  const double straight_on = a.seen_free + b.seen_free;
+  if (straight_on == 0.0 || a.is_of_fragment || b.is_of_fragment) return kEmptyCost * straight_on;
+  auto bridge = bridge_between(a, b, radius);
+  double along_bridge = empty_beyond_front(bridge, occlusion, radius);
+  std::reverse(bridge.begin(), bridge.end());
+  along_bridge += empty_beyond_front(bridge, occlusion, radius);
+  return kEmptyCost * std::min(straight_on, along_bridge);
+}
+
 double bounding_volume(const std::vector<PieceEnd>& ends, double radius) {
   Eigen::AlignedBox3d box;
   for (const PieceEnd& end : ends) box.extend(end.position);
@@ -184,7 +215,7 @@ double bounding_volume(const std::vector<PieceEnd>& ends, double radius) {
 }  // namespace
 
 std::vector<PossibleJoin> find_possible_joins(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
-                                              double bending_rate, double cost_limit) {
+                                              const OcclusionTest& occlusion, double bending_rate, double cost_limit) {
   std::vector<PossibleJoin> pairs;
   if (pieces.empty()) return pairs;
   const double radius = pieces.front().radius;
@@ -194,8 +225,9 @@ std::vector<PossibleJoin> find_possible_joins(const std::vector<TubePiece>& piec
   for (std::uint32_t a = 0; a < ends.size(); ++a)
     for (std::uint32_t b = a + 1; b < ends.size(); ++b) {
       if (a / 2 == b / 2 || ends[a].is_on_side || ends[b].is_on_side) continue;
-      const double cost = shape_cost(ends[a], ends[b], bending_rate, radius, density) +
-                          kEmptyCost * (ends[a].seen_free + ends[b].seen_free);
+      double cost = shape_cost(ends[a], ends[b], bending_rate, radius, density);
+      if (!(cost < cost_limit)) continue;
+      cost += free_ends_cost(ends[a], ends[b], occlusion, radius);
       if (!(cost < cost_limit)) continue;
       const double gap = (ends[b].position - ends[a].position).norm();
       pairs.push_back({.end_a = a, .end_b = b, .cost = cost, .length = lengths[a / 2] + lengths[b / 2] + gap});
@@ -227,18 +259,15 @@ std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, cons
   for (const TubePiece& piece : pieces) {
     const auto& n = piece.nodes;
     for (const auto& [tip, inner] : {std::pair(n.front(), n[1]), std::pair(n.back(), n[n.size() - 2])}) {
-      PieceEnd end{.position = tip, .outward = (tip - inner).normalized()};
+      PieceEnd end{.position = tip, .outward = (tip - inner).normalized(), .is_of_fragment = is_fragment(piece)};
       // A cylinder of length l fitted to points with errors of about r / 20 (the curve's tolerance) points that much
       // over l astray; a fragment's axis is known to a quarter of a radius at best.
-      const double error = is_fragment(piece) ? piece.radius / 4.0 : piece.radius / 20.0;
+      const double error = end.is_of_fragment ? piece.radius / 4.0 : piece.radius / 20.0;
       const double astray = 2.0 * error / std::max((tip - inner).norm(), piece.radius / 2.0);
       end.direction_variance = 2.0 * astray * astray;
-      StretchEvidence beyond;
-      for (const double reach : {0.5, 0.75, 1.0}) {
-        const StretchEvidence e = occlusion.around(end.position + reach * piece.radius * end.outward, end.outward);
-        beyond.empty += e.empty / 3.0, beyond.hidden += e.hidden / 3.0, beyond.surface += e.surface / 3.0;
-      }
-      end.seen_free = beyond.empty;
+      for (const double reach : kBeyondEnd)
+        end.seen_free += occlusion.around(end.position + reach * piece.radius * end.outward, end.outward).empty;
+      end.seen_free /= static_cast<double>(std::size(kBeyondEnd));
       end.is_on_side =
           piece.length() > piece.radius && std::any_of(pieces.begin(), pieces.end(), [&](const auto& other) {
             return &other != &piece && place_on_side(end.position, end.outward, other.nodes, piece.radius).has_value();

@@ -54,7 +54,7 @@ class Joiner {
     bending_rate_ = estimate_bending_rate(pieces, radius_);
     ends_ = find_piece_ends(pieces, occlusion, 40.0 * radius_);
     decide_whether_tubes_branch();
-    pairs_ = find_possible_joins(pieces, ends_, bending_rate_, kJoinCostLimit);
+    pairs_ = find_possible_joins(pieces, ends_, occlusion, bending_rate_, kJoinCostLimit);
     find_joins();
   }
 
@@ -116,8 +116,8 @@ class Joiner {
   bool is_confirmed(double length) const {
     const std::vector<double> seen = seen_lengths();
     const double tolerance = length_tolerance() / 2.0;
-    const auto as_long = static_cast<std::size_t>(std::count_if(
-        seen.begin(), seen.end(), [&](double other) { return std::abs(other - length) < tolerance; }));
+    const auto as_long = static_cast<std::size_t>(
+        std::count_if(seen.begin(), seen.end(), [&](double other) { return std::abs(other - length) < tolerance; }));
     return as_long >= 2 && as_long > count_longer_pieces(length + tolerance);
   }
 
@@ -181,7 +181,8 @@ class Joiner {
     if (missing < 0.0) return std::min(0.5 * missing * missing / (sigma * sigma), kLengthCostLimit);
     const double unexplained = std::max(missing - room, 0.0);
     const bool fragment = chain.pieces.size() == 1 && is_fragment(pieces_[chain.pieces.front()]);
-    return std::min(0.5 * unexplained * unexplained / (sigma * sigma), fragment ? kFragmentCostLimit : kLengthCostLimit);
+    return std::min(0.5 * unexplained * unexplained / (sigma * sigma),
+                    fragment ? kFragmentCostLimit : kLengthCostLimit);
   }
 
   void extend(Chain& chain) {

@@ -15,8 +15,7 @@ constexpr double kSpacing = 0.004;  // metres, of a built cloud's points
 /// A level sheet of points about `center`.
 void add_sheet(const Vec3& center, double half_size, std::vector<Point>& points) {
   for (double x = -half_size; x <= half_size; x += kSpacing)
-    for (double y = -half_size; y <= half_size; y += kSpacing)
-      points.push_back((center + Vec3(x, y, 0)).cast<float>());
+    for (double y = -half_size; y <= half_size; y += kSpacing) points.push_back((center + Vec3(x, y, 0)).cast<float>());
 }
 
 /// What a scanner 2 m above sees of a floor far below, and of a lid over the middle of the x axis.
@@ -27,12 +26,15 @@ class TubeJoining : public ::testing::Test {
     add_sheet({0, 0, 0.1}, 0.03, points_);
   }
 
-  std::vector<double> joined_lengths(const std::vector<TubePiece>& pieces) const {
+  OcclusionTest occlusion() const {
     const Pose world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 2});
     const ModelingInput input{.points = points_, .world_from_sensor = world_from_sensor, .bin = std::nullopt};
-    const OcclusionTest occlusion(input, {world_from_sensor, Point::Zero()}, kSpacing, kRadius);
+    return {input, {world_from_sensor, Point::Zero()}, kSpacing, kRadius};
+  }
+
+  std::vector<double> joined_lengths(const std::vector<TubePiece>& pieces) const {
     std::vector<double> lengths;
-    for (const TubePath& path : join_pieces(pieces, occlusion, 0.0).paths)
+    for (const TubePath& path : join_pieces(pieces, occlusion(), 0.0).paths)
       lengths.push_back(polyline_length(path.nodes));
     std::sort(lengths.begin(), lengths.end());
     return lengths;
@@ -58,6 +60,22 @@ TEST_F(TubeJoining, AnEndThatIsDrawnOutPreventsNoClearJoin) {
       {straight(0, -0.25, -0.01), straight(0, 0.01, 0.283), straight(0.3, -0.25, 0.25), straight(-0.3, -0.25, 0.25)});
   ASSERT_EQ(lengths.size(), 3u);
   EXPECT_NEAR(lengths.back(), 0.533, 1e-9);
+}
+
+TEST_F(TubeJoining, AnEndIsFreeWhereItsBridgeLeads) {
+  const auto cost = [&](double y, double free, bool is_of_fragment) {
+    const std::vector<TubePiece> pieces = {straight(y, -0.25, -0.01), straight(y, 0.01, 0.25)};
+    std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion(), 0.5);
+    ends[1].seen_free = free;  // as where the tube bends at its end
+    ends[1].is_of_fragment = is_of_fragment;
+    const auto joins = find_possible_joins(pieces, ends, occlusion(), 1.0, 100.0);
+    const auto inner =
+        std::find_if(joins.begin(), joins.end(), [](const auto& j) { return j.end_a == 1 && j.end_b == 2; });
+    return inner->cost;
+  };
+  EXPECT_EQ(cost(0.0, 1.0, false), cost(0.0, 0.0, false));  // under the lid
+  EXPECT_GT(cost(0.0, 1.0, true), cost(0.0, 0.0, true) + 1.0);
+  EXPECT_GT(cost(0.3, 1.0, false), cost(0.3, 0.0, false) + 1.0);  // in the open
 }
 
 TEST(Occlusion, SeesTubesThatHangOverTheWall) {

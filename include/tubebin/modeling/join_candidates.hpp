@@ -15,13 +15,14 @@ bool is_fragment(const TubePiece& piece);
 struct PieceEnd {
   Vec3 position = Vec3::Zero();     ///< metres
   Vec3 outward = Vec3::Zero();      ///< unit, along the last cylinder
+  bool is_of_fragment = false;      ///< of a piece that is one
   double direction_variance = 0.0;  ///< of `outward`, rad^2 an axis
   double seen_free = 0.0;           ///< part of the place just beyond it that the scanner saw to be empty
   bool is_on_side = false;          ///< of another piece: a branch starts here
   double hidden_reach = 0.0;        ///< how far the tube could go on unseen, metres
 };
 
-/// Two ends that could belong together by their places and directions alone.
+/// Two ends that could belong together by their places and directions, and by what the scan shows just beyond them.
 struct PossibleJoin {
   std::uint32_t end_a = 0, end_b = 0;  ///< end_a < end_b, of different pieces
   double cost = 0.0;                   ///< nats: -log of how much likelier it is that they do
@@ -45,7 +46,7 @@ std::vector<PieceEnd> find_piece_ends(const std::vector<TubePiece>& pieces, cons
 
 /// The pairs that cost less than `cost_limit`.
 std::vector<PossibleJoin> find_possible_joins(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
-                                              double bending_rate, double cost_limit);
+                                              const OcclusionTest& occlusion, double bending_rate, double cost_limit);
 
 struct JoinLimits {
   double cost = 0.0;    ///< nats, of a join
