@@ -36,6 +36,12 @@ Vec3 angle_vector(const Vec3& from, const Vec3& to) {
   return sine < 1e-12 ? Vec3(Vec3::Zero()) : Vec3(across / sine * std::atan2(sine, to.dot(from)));
 }
 
+/// Whether two ends overlap or fall short of a bend, so that their chord has no direction of its own: where no two
+/// tubes' ends can lie, nearer than a radius, or nearly two where one lies beside the other's tube.
+bool have_met(const Vec3& chord, const Vec3& onward, double radius) {
+  return chord.norm() <= (chord.dot(onward) < 0.0 ? 1.5 * radius : radius);
+}
+
 /// -log of the likelihood ratio of "the tube goes on from a to b" to "b is some other tube's end".
 /// A tube's direction walks at random along it with variance q a metre and axis. Its place and direction after a
 /// length D are then normal with covariance [q D^3 / 3, q D^2 / 2; q D^2 / 2, q D] an axis, of determinant q^2 D^4 / 12,
@@ -44,9 +50,8 @@ Vec3 angle_vector(const Vec3& from, const Vec3& to) {
 double shape_cost(const PieceEnd& a, const PieceEnd& b, double bending_rate, double radius, double end_density) {
   const Vec3 chord = b.position - a.position;
   const double length = std::max(chord.norm(), radius);
-  // Nearer than a radius, where no two tubes' ends can lie side by side, ends overlap or fall short of a bend: their
-  // chord has no direction of its own.
-  const Vec3 along = chord.norm() > radius ? chord.normalized() : (a.outward - b.outward).normalized();
+  const Vec3 onward = (a.outward - b.outward).normalized();
+  const Vec3 along = have_met(chord, onward, radius) ? onward : Vec3(chord.normalized());
   const Vec3 leave = angle_vector(along, a.outward);
   const Vec3 arrive = angle_vector(along, -b.outward);
   const double energy = 4.0 * (leave.squaredNorm() + leave.dot(arrive) + arrive.squaredNorm()) / length;

@@ -40,6 +40,13 @@ class TubeJoining : public ::testing::Test {
     return lengths;
   }
 
+  /// Of the join of two pieces, the first one's last end with the second one's first.
+  double cost_of_inner_ends(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends) const {
+    for (const PossibleJoin& join : find_possible_joins(pieces, ends, occlusion(), 1.0, 100.0))
+      if (join.end_a == 1 && join.end_b == 2) return join.cost;
+    return 100.0;
+  }
+
   static TubePiece straight(double y, double x_from, double x_to) {
     return {.nodes = {{x_from, y, 0}, {(x_from + x_to) / 2, y, 0}, {x_to, y, 0}}, .radius = kRadius, .points = {}};
   }
@@ -68,14 +75,22 @@ TEST_F(TubeJoining, AnEndIsFreeWhereItsBridgeLeads) {
     std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion(), 0.5);
     ends[1].seen_free = free;  // as where the tube bends at its end
     ends[1].is_of_fragment = is_of_fragment;
-    const auto joins = find_possible_joins(pieces, ends, occlusion(), 1.0, 100.0);
-    const auto inner =
-        std::find_if(joins.begin(), joins.end(), [](const auto& j) { return j.end_a == 1 && j.end_b == 2; });
-    return inner->cost;
+    return cost_of_inner_ends(pieces, ends);
   };
   EXPECT_EQ(cost(0.0, 1.0, false), cost(0.0, 0.0, false));  // under the lid
   EXPECT_GT(cost(0.0, 1.0, true), cost(0.0, 0.0, true) + 1.0);
   EXPECT_GT(cost(0.3, 1.0, false), cost(0.3, 0.0, false) + 1.0);  // in the open
+}
+
+TEST_F(TubeJoining, EndsThatPassEachOtherAreOneTubes) {
+  const auto cost = [&](double y, double overlap) {
+    const std::vector<TubePiece> pieces = {straight(0, -0.25, overlap / 2), straight(y, -overlap / 2, 0.25)};
+    std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion(), 0.5);
+    for (PieceEnd& end : ends) end.is_on_side = false;  // as where tubes don't branch
+    return cost_of_inner_ends(pieces, ends);
+  };
+  EXPECT_LT(cost(0.0, 1.2 * kRadius), -5.0);
+  EXPECT_GT(cost(2.0 * kRadius, 1.2 * kRadius), 0.0);  // side by side
 }
 
 TEST(Occlusion, SeesTubesThatHangOverTheWall) {
