@@ -30,13 +30,22 @@ target_compile_definitions(tubebin_embree INTERFACE TUBEBIN_EMBREE_MAJOR=${TUBEB
 add_library(tubebin::embree ALIAS tubebin_embree)
 
 # PCL's own CMake package pulls in VTK, Qt and MPI through its visualization parts; the parts used here need none
-# of them, so they are found by pkg-config-free names and headers alone.
+# of them, so they are found by pkg-config-free names and headers alone. Its I/O library needs them all, a tenth of a
+# second for every program to load: tests alone use it, as another reader and writer.
 find_path(PCL_INCLUDE_DIR pcl/pcl_config.h PATH_SUFFIXES pcl-1.13 pcl-1.14 pcl-1.15 pcl-1.12 REQUIRED)
 add_library(tubebin_pcl INTERFACE)
 target_include_directories(tubebin_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIR})
 target_link_libraries(tubebin_pcl INTERFACE Eigen3::Eigen)
-foreach(part common io io_ply octree kdtree search features filters sample_consensus segmentation)
+foreach(part common octree kdtree search features filters sample_consensus segmentation)
   find_library(PCL_${part}_LIBRARY pcl_${part} REQUIRED)
   target_link_libraries(tubebin_pcl INTERFACE ${PCL_${part}_LIBRARY})
 endforeach()
 add_library(tubebin::pcl ALIAS tubebin_pcl)
+find_library(PCL_io_LIBRARY pcl_io REQUIRED)
+find_library(PCL_io_ply_LIBRARY pcl_io_ply REQUIRED)
+add_library(tubebin_pcl_io INTERFACE)
+target_link_libraries(tubebin_pcl_io INTERFACE tubebin_pcl ${PCL_io_LIBRARY} ${PCL_io_ply_LIBRARY})
+add_library(tubebin::pcl_io ALIAS tubebin_pcl_io)
+
+# LZF, PCD's compression
+pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)

@@ -1,5 +1,5 @@
 /// PCD 0.5 to 0.7 (https://pointclouds.org/documentation/tutorials/pcd_file_format.html).
-#include <pcl/io/lzf.h>
+#include <lzf.h>
 
 #include <algorithm>
 #include <cmath>
@@ -262,7 +262,7 @@ std::vector<char> decompress(const PcdHeader& header, std::string_view data, con
   if (unpacked / kLongestRun > packed)
     throw_io_error("{}: {} compressed bytes cannot hold the {} that are announced", name, packed, unpacked);
   std::vector<char> out(unpacked);
-  if (pcl::lzfDecompress(data.data(), packed, out.data(), unpacked) != unpacked)
+  if (lzf_decompress(data.data(), packed, out.data(), unpacked) != unpacked)
     throw_io_error("{}: the compressed data is damaged", name);
   return out;
 }

@@ -1,6 +1,6 @@
 /// PCD 0.7 (https://pointclouds.org/documentation/tutorials/pcd_file_format.html).
 #include <fmt/format.h>
-#include <pcl/io/lzf.h>
+#include <lzf.h>
 
 #include <cstring>
 #include <iterator>
@@ -89,16 +89,16 @@ std::string lzf_literals(std::string_view input) {
   return out;
 }
 
-/// PCL's compressor gives up on some inputs and has had outputs that its own reader refused, so what it makes
-/// is read back before it counts.
+/// What the compressor makes is read back before it counts: PCL's copy of it has had outputs that its own reader
+/// refused.
 std::string compress(const std::string& input) {
   const auto size = static_cast<unsigned int>(input.size());
-  // Its output is below 104 % of the input (lzf.h); in a smaller buffer it complains on stderr.
+  // Its output is below 104 % of the input (lzf.h).
   std::string out(input.size() + input.size() / 16 + 64, '\0');
-  out.resize(pcl::lzfCompress(input.data(), size, out.data(), static_cast<unsigned int>(out.size())));
+  out.resize(lzf_compress(input.data(), size, out.data(), static_cast<unsigned int>(out.size())));
   std::string back(input.size(), '\0');
   const auto out_size = static_cast<unsigned int>(out.size());
-  const bool readable = !out.empty() && pcl::lzfDecompress(out.data(), out_size, back.data(), size) == size;
+  const bool readable = !out.empty() && lzf_decompress(out.data(), out_size, back.data(), size) == size;
   return readable && back == input ? out : lzf_literals(input);
 }
 
