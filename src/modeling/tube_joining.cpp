@@ -24,7 +24,7 @@ constexpr double kFragmentCostLimit = 3.0;
 constexpr double kJoinCostLimit = 9.0;
 /// And clear where it is e^2 times likelier with it.
 constexpr double kClearJoinCost = -2.0;
-constexpr std::size_t kNodeLimit = 2000;
+constexpr std::size_t kNodeLimit = 1000;
 /// The right join is among an end's cheapest few, or it could not be told from chance anyhow.
 constexpr std::size_t kJoinsPerEnd = 3;
 constexpr std::size_t kPathLimit = 200;
