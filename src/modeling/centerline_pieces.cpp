@@ -1,5 +1,7 @@
 #include "tubebin/modeling/centerline_pieces.hpp"
 
+#include <algorithm>
+
 #include "tubebin/modeling/branch_splitting.hpp"
 #include "tubebin/modeling/centerline_fitting.hpp"
 #include "tubebin/modeling/centerline_segmentation.hpp"
@@ -10,7 +12,7 @@
 namespace tubebin {
 namespace {
 
-/// The points that no segment holds.
+/// The points that no segment holds, in order of x.
 std::vector<SurfacePoint> loose_points(const FilteredCloud& cloud, const std::vector<Segment>& segments) {
   std::vector<bool> is_held(cloud.points.size(), false);
   for (const Segment& segment : segments)
@@ -18,6 +20,7 @@ std::vector<SurfacePoint> loose_points(const FilteredCloud& cloud, const std::ve
   std::vector<SurfacePoint> loose;
   for (std::size_t i = 0; i < cloud.points.size(); ++i)
     if (!is_held[i]) loose.push_back({cloud.points[i].cast<double>(), cloud.normals[i].cast<double>()});
+  std::ranges::stable_sort(loose, {}, [](const SurfacePoint& point) { return point.position.x(); });
   return loose;
 }
 

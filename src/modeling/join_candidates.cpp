@@ -75,6 +75,7 @@ Eigen::AlignedBox3d box_of(const std::vector<Vec3>& nodes) {
 
 /// A pair whose cost has what was looked into so far.
 struct Examined : PossibleJoin {
+  std::uint32_t bridge = 0;  ///< its place among the bridges
   enum class Step : std::uint8_t { shape, occlusion, room } last = Step::shape;
 };
 
@@ -183,20 +184,18 @@ double empty_cost(const std::vector<Vec3>& bridge, const OcclusionTest& occlusio
 /// Where a tube would go on beyond an end's rim, radii.
 constexpr double kBeyondEnd[] = {0.5, 0.75, 1.0};
 
-/// The part of what lies beyond a bridge's front end, along it, where the scan shows that no tube is.
-double empty_beyond_front(const std::vector<Vec3>& bridge, const OcclusionTest& occlusion, double radius) {
-  double empty = 0.0, walked = 0.0;
-  std::size_t samples = 0;
-  for (std::size_t i = 0; i + 1 < bridge.size() && samples < std::size(kBeyondEnd); ++i) {
-    const Vec3 step = bridge[i + 1] - bridge[i];
-    const double length = step.norm();
-    for (; samples < std::size(kBeyondEnd) && kBeyondEnd[samples] * radius <= walked + length; ++samples) {
-      const double along = (kBeyondEnd[samples] * radius - walked) / length;
-      empty += occlusion.around(bridge[i] + along * step, step / length).empty;
-    }
-    walked += length;
+/// The part of what lies beyond end a, along the bridge to end b, where the scan shows that no tube is.
+double empty_along_bridge(const PieceEnd& a, const PieceEnd& b, const OcclusionTest& occlusion, double radius) {
+  const double gap = (b.position - a.position).norm();
+  double empty = 0.0, samples = 0.0;
+  for (const double reach : kBeyondEnd) {
+    const double t = reach * radius / gap;
+    if (t > 1.0) break;
+    const Vec3 along = hermite(a, b, gap, t + 0.05) - hermite(a, b, gap, t - 0.05);
+    empty += occlusion.around(hermite(a, b, gap, t), along.normalized()).empty;
+    samples += 1.0;
   }
-  return samples > 0 ? empty / static_cast<double>(samples) : 0.0;
+  return samples > 0.0 ? empty / samples : 0.0;
 }
 
 /// What the scan says against a tube that goes on beyond both ends. Where it bends at once, it does so along the bridge
@@ -204,10 +203,7 @@ double empty_beyond_front(const std::vector<Vec3>& bridge, const OcclusionTest& 
 double free_ends_cost(const PieceEnd& a, const PieceEnd& b, const OcclusionTest& occlusion, double radius) {
   const double straight_on = a.seen_free + b.seen_free;
   if (straight_on == 0.0 || a.is_of_fragment || b.is_of_fragment) return kEmptyCost * straight_on;
-  auto bridge = bridge_between(a, b, radius);
-  double along_bridge = empty_beyond_front(bridge, occlusion, radius);
-  std::reverse(bridge.begin(), bridge.end());
-  along_bridge += empty_beyond_front(bridge, occlusion, radius);
+  const double along_bridge = empty_along_bridge(a, b, occlusion, radius) + empty_along_bridge(b, a, occlusion, radius);
   return kEmptyCost * std::min(straight_on, along_bridge);
 }
 
@@ -294,7 +290,9 @@ std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pi
   RoomTest room(obstacles, bending_rate, radius);
   std::vector<Examined> queue;
   for (const PossibleJoin& pair : pairs)
-    if (pair.cost < limits.cost && !(pair.length > limits.length)) queue.push_back({pair});
+    if (pair.cost < limits.cost && !(pair.length > limits.length))
+      queue.push_back({pair, static_cast<std::uint32_t>(queue.size())});
+  std::vector<std::vector<Vec3>> bridges(queue.size());  // built when they are first asked for
   // Best first: a pair's cost only grows as it is looked into, so most pairs need no look at all.
   const auto later = [](const Examined& x, const Examined& y) {
     return std::tie(x.cost, x.end_a, x.end_b) > std::tie(y.cost, y.end_a, y.end_b);
@@ -307,7 +305,8 @@ std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pi
     queue.pop_back();
     const std::uint32_t a = pair.end_a, b = pair.end_b;
     if (joins_of_end[a] >= limits.joins_per_end && joins_of_end[b] >= limits.joins_per_end) continue;
-    auto bridge = bridge_between(ends[a], ends[b], radius);
+    std::vector<Vec3>& bridge = bridges[pair.bridge];
+    if (bridge.empty()) bridge = bridge_between(ends[a], ends[b], radius);
     if (pair.last != Examined::Step::room) {
       const double limit = limits.cost - pair.cost;
       if (pair.last == Examined::Step::shape) {

@@ -48,8 +48,8 @@ RangeImage::RangeImage(const ViewProjection& projection, std::span<const Point> 
 
 RangeImage::Evidence RangeImage::evidence(const Point& point, float tolerance) const {
   const auto image = projection_(point);
-  const float column = std::floor((image.u - u_min_) * inverse_cell_);
-  const float row = std::floor((image.v - v_min_) * inverse_cell_);
+  const float column = (image.u - u_min_) * inverse_cell_;
+  const float row = (image.v - v_min_) * inverse_cell_;
   if (!(column >= 0.0f && row >= 0.0f && column < static_cast<float>(columns_) && row < static_cast<float>(rows_)))
     return Evidence::empty;
   const float nearest = nearest_[static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column))];

@@ -209,7 +209,8 @@ struct Support {
   }
 };
 
-/// The points about a place that moves on by steps shorter than a radius, gathered anew where it has moved far.
+/// The points about a place that moves on by steps shorter than a radius, gathered anew where it has moved far. The
+/// loose ones stand in order of x.
 class PointsAbout {
  public:
   PointsAbout(std::span<const SurfacePoint> own, std::span<const SurfacePoint> loose, double radius)
@@ -220,14 +221,23 @@ class PointsAbout {
     if (!((place - gathered_about_).norm() <= 4.0 * radius_)) {
       gathered_about_ = place;
       gathered_.clear();
-      for (const auto& points : {own_, loose_})
+      for (const auto& points : {own_, loose_about(place)})
         for (const SurfacePoint& point : points)
-          if ((point.position - place).squaredNorm() < 36.0 * radius_ * radius_) gathered_.push_back(point);
+          if ((point.position - place).squaredNorm() < kReach * kReach * radius_ * radius_) gathered_.push_back(point);
     }
     return gathered_;
   }
 
  private:
+  static constexpr double kReach = 6.0;  ///< radii
+
+  std::span<const SurfacePoint> loose_about(const Vec3& place) const {
+    const auto x_of = [](const SurfacePoint& point) { return point.position.x(); };
+    const auto first = std::ranges::lower_bound(loose_, place.x() - kReach * radius_, {}, x_of);
+    const auto last = std::ranges::upper_bound(first, loose_.end(), place.x() + kReach * radius_, {}, x_of);
+    return {first, last};
+  }
+
   std::span<const SurfacePoint> own_, loose_;
   double radius_;
   Vec3 gathered_about_ = Vec3::Constant(std::numeric_limits<double>::infinity());
