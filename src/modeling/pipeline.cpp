@@ -11,6 +11,7 @@
 #include "tubebin/modeling/centerline_segmentation.hpp"
 #include "tubebin/modeling/labeling.hpp"
 #include "tubebin/modeling/normals.hpp"
+#include "tubebin/modeling/piece_cleaning.hpp"
 #include "tubebin/modeling/radius_estimation.hpp"
 #include "tubebin/modeling/tube_joining.hpp"
 
@@ -77,6 +78,7 @@ std::vector<TubePiece> find_cylinder_pieces(const FilteredCloud& cloud, const st
   std::vector<TubePiece> pieces;
   for (const Segment& segment : segments)
     for (TubePiece& piece : fit_cylinders(cloud, segment, radius, options)) pieces.push_back(std::move(piece));
+  drop_explained_pieces(pieces, cloud.points, cloud.spacing);  // a tube whose surface made two regions is found twice
   return pieces;
 }
 
