@@ -10,12 +10,13 @@
 namespace tubebin {
 namespace {
 
-constexpr double kSpacing = 0.004;  // metres, of a built cloud's points
+constexpr double kSheetSpacing = 0.004;  // metres, of a built cloud's points
 
 /// A level sheet of points about `center`.
 void add_sheet(const Vec3& center, double half_size, std::vector<Point>& points) {
-  for (double x = -half_size; x <= half_size; x += kSpacing)
-    for (double y = -half_size; y <= half_size; y += kSpacing) points.push_back((center + Vec3(x, y, 0)).cast<float>());
+  for (double x = -half_size; x <= half_size; x += kSheetSpacing)
+    for (double y = -half_size; y <= half_size; y += kSheetSpacing)
+      points.push_back((center + Vec3(x, y, 0)).cast<float>());
 }
 
 /// What a scanner 2 m above sees of a floor far below, and of a lid over the middle of the x axis.
@@ -29,7 +30,7 @@ class TubeJoining : public ::testing::Test {
   OcclusionTest occlusion() const {
     const Pose world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 2});
     const ModelingInput input{.points = points_, .world_from_sensor = world_from_sensor, .bin = std::nullopt};
-    return {input, {world_from_sensor, Point::Zero()}, kSpacing, kRadius};
+    return {input, {world_from_sensor, Point::Zero()}, kSheetSpacing, kRadius};
   }
 
   std::vector<double> joined_lengths(const std::vector<TubePiece>& pieces) const {
