@@ -178,9 +178,8 @@ class Joiner {
     for (const std::uint32_t end : {chain.first_end, chain.last_end})
       if (ends_[end].seen_free < 0.5) room += ends_[end].hidden_reach + radius_;
     const double sigma = length_sigma(chain.bridged);
-    if (missing < 0.0) return std::min(0.5 * missing * missing / (sigma * sigma), kLengthCostLimit);
-    const double unexplained = std::max(missing - room, 0.0);
-    const bool fragment = chain.pieces.size() == 1 && is_fragment(pieces_[chain.pieces.front()]);
+    const double unexplained = missing < 0.0 ? missing : std::max(missing - room, 0.0);
+    const bool fragment = missing >= 0.0 && chain.pieces.size() == 1 && is_fragment(pieces_[chain.pieces.front()]);
     return std::min(0.5 * unexplained * unexplained / (sigma * sigma),
                     fragment ? kFragmentCostLimit : kLengthCostLimit);
   }
