@@ -10,7 +10,7 @@ std::vector<std::uint32_t> measured_points(std::span<const Point> points) {
   std::vector<std::uint32_t> selected;
   selected.reserve(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (std::isfinite(points[i].z())) selected.push_back(i);
+    if (is_finite(points[i])) selected.push_back(i);
   return selected;
 }
 

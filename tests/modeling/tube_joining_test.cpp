@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "modeling/built_scene.hpp"
 #include "tubebin/modeling/occlusion.hpp"
@@ -102,6 +103,20 @@ TEST(Occlusion, SeesTubesThatHangOverTheWall) {
   ASSERT_GT(0.3, scene.bin.width / 2.0 + scene.bin.wall_thickness);
   EXPECT_EQ(occlusion.around({0, 0.3, 0.22}, Vec3::UnitY()).surface, 1.0);
   EXPECT_EQ(occlusion.around({0.05, 0.3, 0.22}, Vec3::UnitY()).empty, 1.0);
+}
+
+TEST(Occlusion, LeavesOutWhatIsNotFiniteInAnyCoordinate) {
+  std::vector<Point> points;
+  add_sheet({0, 0, 0}, 0.1, points);
+  for (int axis = 0; axis < 3; ++axis) {
+    Point point = Point::Zero();
+    point[axis] = std::numeric_limits<float>::quiet_NaN();
+    points.push_back(point);
+  }
+  const Pose world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 2});
+  const ModelingInput input{.points = points, .world_from_sensor = world_from_sensor, .bin = std::nullopt};
+  const OcclusionTest occlusion(input, {world_from_sensor, Point::Zero()}, kSheetSpacing, kRadius);
+  EXPECT_EQ(occlusion.around({0, 0, -kRadius}, Vec3::UnitX()).surface, 1.0);
 }
 
 }  // namespace
