@@ -1,4 +1,4 @@
-// Whether two of many curves come near each other.
+// Curves of many samples, to ask what is near them.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace tubebin {
 
-/// Samples of a curve, in boxes that tell most curves apart without a look at the samples. Keeps a reference to them.
+/// Samples of a curve, in boxes that answer most questions without a look at the samples. Keeps a reference to them.
 class BoxedCurve {
  public:
   explicit BoxedCurve(const std::vector<Vec3>& samples) : samples_(samples) {
@@ -31,6 +31,19 @@ class BoxedCurve {
           return true;
     }
     return false;
+  }
+
+  /// The sample nearest to `p`, soonest where `guess` is near it.
+  std::size_t nearest(const Vec3& p, std::size_t guess) const {
+    double least = (p - samples_[guess]).squaredNorm();
+    for (std::size_t box = 0; box < boxes_.size(); ++box) {
+      if (!(boxes_[box].squaredExteriorDistance(p) < least)) continue;
+      const std::span<const Vec3> samples = run(box);
+      for (std::size_t i = 0; i < samples.size(); ++i)
+        if (const double squared = (p - samples[i]).squaredNorm(); squared < least)
+          least = squared, guess = box * kRun + i;
+    }
+    return guess;
   }
 
  private:

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "modeling/boxed_curve.hpp"
 #include "tubebin/modeling/surface_fitting.hpp"
 
 namespace tubebin {
 namespace {
 
-/// A surface point and where it puts the centreline.
+/// A surface point's normal and where it puts the centreline.
 struct Vote {
-  Vec3 point;
   Vec3 normal;
   Vec3 center;
   std::size_t sample = 0;  ///< nearest sample of the curve
@@ -42,40 +42,38 @@ std::vector<Vec3> level_set_skeleton(const VoteGraph& graph, double step) {
   return skeleton;
 }
 
-Vec3 tangent(const std::vector<Vec3>& curve, std::size_t i) {
-  const std::size_t before = i == 0 ? 0 : i - 1;
-  const std::size_t after = std::min(i + 1, curve.size() - 1);
-  return (curve[after] - curve[before]).normalized();
-}
-
-/// Finds each vote's place along the curve.
-void place_along(const std::vector<Vec3>& curve, std::vector<Vote>& votes) {
-  std::vector<double> arclength = {0.0};
-  double longest = 0.0;
-  for (std::size_t i = 1; i < curve.size(); ++i) {
-    const double length = (curve[i] - curve[i - 1]).norm();
-    arclength.push_back(arclength.back() + length);
-    longest = std::max(longest, length);
-  }
-  constexpr std::size_t kSkip = 8;
-  std::size_t sample = 0;  // begins with the last vote's, which is near
-  for (Vote& vote : votes) {
-    double nearest = (vote.center - curve[sample]).squaredNorm();
-    const double far = std::sqrt(nearest) + kSkip * longest;
-    for (std::size_t i = 0; i < curve.size();) {
-      const double squared = (vote.center - curve[i]).squaredNorm();
-      if (squared < nearest) nearest = squared, sample = i;
-      i += squared > far * far ? kSkip : 1;  // the curve comes no nearer before
+/// A curve and its unit tangents.
+struct Course {
+  explicit Course(const std::vector<Vec3>& curve) : samples(curve) {
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+      const std::size_t before = i == 0 ? 0 : i - 1, after = std::min(i + 1, curve.size() - 1);
+      tangents.push_back((curve[after] - curve[before]).normalized());
     }
+  }
+
+  const std::vector<Vec3>& samples;
+  std::vector<Vec3> tangents;
+};
+
+/// Finds each vote's place along the course.
+void place_along(const Course& course, std::vector<Vote>& votes) {
+  std::vector<double> arclength = {0.0};
+  for (std::size_t i = 1; i < course.samples.size(); ++i)
+    arclength.push_back(arclength.back() + (course.samples[i] - course.samples[i - 1]).norm());
+  const BoxedCurve boxed(course.samples);
+  std::size_t sample = 0;
+  for (Vote& vote : votes) {
+    sample = boxed.nearest(vote.center, sample);  // the last vote's is near
     vote.sample = sample;
-    vote.arclength = arclength[vote.sample] + (vote.center - curve[vote.sample]).dot(tangent(curve, vote.sample));
+    vote.arclength = arclength[sample] + (vote.center - course.samples[sample]).dot(course.tangents[sample]);
   }
 }
 
 /// Mean votes in steps along the curve. A vote counts if its normal stands across the tube (within 30 degrees; those
 /// of a flat end do not) and it lies within half a radius of the curve.
 std::vector<Vec3> smooth(const std::vector<Vec3>& curve, std::vector<Vote>& votes, double step, double radius) {
-  place_along(curve, votes);
+  const Course course(curve);
+  place_along(course, votes);
   double first = std::numeric_limits<double>::infinity(), last = -first;
   for (const Vote& vote : votes) first = std::min(first, vote.arclength), last = std::max(last, vote.arclength);
   struct Mean {
@@ -84,7 +82,7 @@ std::vector<Vec3> smooth(const std::vector<Vec3>& curve, std::vector<Vote>& vote
   };
   std::vector<Mean> means(static_cast<std::size_t>((last - first) / step) + 1);
   for (const Vote& vote : votes) {
-    const Vec3 along = tangent(curve, vote.sample);
+    const Vec3& along = course.tangents[vote.sample];
     const Vec3 offset = vote.center - curve[vote.sample];
     if (std::abs(vote.normal.dot(along)) > 0.5 || (offset - offset.dot(along) * along).norm() > radius / 2.0) continue;
     Mean& mean = means[static_cast<std::size_t>((vote.arclength - first) / step)];
@@ -116,44 +114,47 @@ void simplify(const std::vector<Vec3>& curve, std::size_t first, std::size_t las
   simplify(curve, corner, last, tolerance, nodes);
 }
 
+/// A straight tube through `center`.
+struct AxisGuess {
+  Vec3 axis;  ///< unit
+  Vec3 center;
+  double reach;  ///< of its votes from the axis, metres
+
+  bool explains(const Vote& vote) const {
+    const Vec3 offset = vote.center - center;
+    const double along = offset.dot(axis);
+    return std::abs(vote.normal.dot(axis)) < 0.3 && offset.squaredNorm() - along * along < reach * reach;
+  }
+};
+
 /// A stretch too short to show its direction as a curve gets it from its normals: two of a side span a plane across
 /// the axis. Of the axes of many pairs the one that most votes agree on wins, whatever else is there (a flat end).
 /// Half a radius about the middle of what agrees is enough to grow from.
 std::vector<Vec3> axis_from_normals(const std::vector<Vote>& votes, double radius) {
   constexpr std::size_t kPairs = 64, kSample = 128;
-  const std::size_t stride = votes.size() / kSample + 1;
-  Vec3 best_axis = Vec3::UnitX(), best_center = votes.front().center;
-  std::size_t best_count = 0;
+  std::vector<Vote> sample;
+  for (std::size_t i = 0; i < votes.size(); i += votes.size() / kSample + 1) sample.push_back(votes[i]);
+  AxisGuess best{Vec3::UnitX(), votes.front().center, radius / 4.0};
+  std::ptrdiff_t most = 0;
   for (std::size_t k = 0; k < kPairs; ++k) {
     // Steps of the golden ratio spread the pairs over the votes.
-    const auto pick = [&](double shift) {
+    const auto pick = [&](double shift) -> const Vote& {
       const double place = std::fmod(0.6180339887 * static_cast<double>(k) + shift, 1.0);
       return votes[static_cast<std::size_t>(place * static_cast<double>(votes.size()))];
     };
-    const Vote first = pick(0.0), second = pick(0.31 + 0.37 * static_cast<double>(k % 2));
+    const Vote &first = pick(0.0), &second = pick(0.31 + 0.37 * static_cast<double>(k % 2));
     const Vec3 across = first.normal.cross(second.normal);
     if (across.norm() < 0.2) continue;  // 12 degrees: their cross product is mostly noise
-    const Vec3 axis = across.normalized();
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < votes.size(); i += stride) {
-      const Vec3 offset = votes[i].center - first.center;
-      if (std::abs(votes[i].normal.dot(axis)) < 0.3 && (offset - offset.dot(axis) * axis).norm() < radius / 4.0)
-        ++count;
-    }
-    if (count > best_count) best_count = count, best_axis = axis, best_center = first.center;
+    const AxisGuess guess{across.normalized(), first.center, radius / 4.0};
+    const auto count = std::ranges::count_if(sample, [&](const Vote& vote) { return guess.explains(vote); });
+    if (count > most) most = count, best = guess;
   }
   Vec3 sum = Vec3::Zero();
   double count = 0.0;
-  for (const Vote& vote : votes) {
-    const Vec3 offset = vote.center - best_center;
-    if (std::abs(vote.normal.dot(best_axis)) > 0.3 ||
-        (offset - offset.dot(best_axis) * best_axis).norm() > radius / 4.0)
-      continue;
-    sum += vote.center;
-    count += 1.0;
-  }
-  const Vec3 middle = count > 0.0 ? Vec3(sum / count) : best_center;
-  return {middle - radius / 4.0 * best_axis, middle + radius / 4.0 * best_axis};
+  for (const Vote& vote : votes)
+    if (best.explains(vote)) sum += vote.center, count += 1.0;
+  const Vec3 middle = count > 0.0 ? Vec3(sum / count) : best.center;
+  return {middle - radius / 4.0 * best.axis, middle + radius / 4.0 * best.axis};
 }
 
 /// The curve without what lies within `cut` of its ends, where the votes of a flat end bend the skeleton aside.
@@ -183,13 +184,11 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Stretc
   constexpr std::size_t kVotes = 800;
   const std::size_t stride = segment.size() / kVotes + 1;
   std::vector<Vote> votes;
-  std::vector<SurfacePoint> surface, own;
-  for (std::size_t k = 0; k < segment.size(); ++k) {
+  std::vector<SurfacePoint> surface;
+  for (std::size_t k = 0; k < segment.size(); k += stride) {
     const Vec3 p = cloud.points[segment[k]].cast<double>(), n = cloud.normals[segment[k]].cast<double>();
-    own.push_back({p, n});
-    if (k % stride != 0) continue;
     surface.push_back({p, n});
-    votes.push_back({.point = p, .normal = n, .center = p - radius * n});
+    votes.push_back({.normal = n, .center = p - radius * n});
   }
   std::vector<Vec3> curve = level_set_skeleton(stretch.graph, radius / 3.0);
   if (curve.size() >= 3) curve = smooth(curve, votes, radius / 3.0, radius);
@@ -207,9 +206,9 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Stretc
   }
   if (fit_surface(piece.nodes, surface, radius).sigma > radius / 4.0) return std::nullopt;
 
-  grow_end(piece.nodes, own, loose, radius, cloud.spacing, viewpoint);
+  grow_end(piece.nodes, cloud, segment, loose, radius, viewpoint);
   std::reverse(piece.nodes.begin(), piece.nodes.end());
-  grow_end(piece.nodes, own, loose, radius, cloud.spacing, viewpoint);
+  grow_end(piece.nodes, cloud, segment, loose, radius, viewpoint);
   // Twice: a corner that the first nodes cut is found when they have moved.
   for (int round = 0; round < 2; ++round) {
     std::vector<Vec3> nodes = {piece.nodes.front()};

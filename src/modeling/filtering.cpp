@@ -66,7 +66,7 @@ std::vector<std::uint32_t> remove_outliers(const ViewProjection& projection, std
                                            const std::vector<std::uint32_t>& indices) {
   std::vector<Point> selected;
   for (const std::uint32_t i : indices) selected.push_back(points[i]);
-  const double reach = 3.0 * estimate_spacing(projection, selected);
+  const double reach = 3.0 * estimate_spacing(projection.images(selected));
   const std::vector<int> counts = count_neighbors(projection, selected, reach);
   // Within three spacings lie some 28 points of a surface, half of them at its edges.
   constexpr int kLeast = 9;
@@ -100,9 +100,10 @@ FilteredCloud filter(const ModelingInput& input, const ViewProjection& projectio
   std::vector<Point> points;
   for (const std::uint32_t i : indices) points.push_back(input.points[i]);
   FilteredCloud cloud;
-  cloud.spacing = estimate_spacing(projection, points);
-  const double range = (points.front() - projection.viewpoint()).norm();
-  const ViewGrid grid(projection, points, static_cast<float>(std::max(2.0 * cloud.spacing / range, 1e-6)));
+  ViewProjection::Images images = projection.images(points);
+  cloud.spacing = estimate_spacing(images);
+  const double range = double(images.range.front());
+  const ViewGrid grid(std::move(images), points, static_cast<float>(std::max(2.0 * cloud.spacing / range, 1e-6)));
   for (const std::uint32_t k : grid.order()) {
     cloud.source.push_back(indices[k]);
     cloud.points.push_back(points[k]);

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
-#include <tuple>
+#include <queue>
 
 #include "tubebin/modeling/branch_links.hpp"
 
@@ -75,7 +76,6 @@ Eigen::AlignedBox3d box_of(const std::vector<Vec3>& nodes) {
 
 /// A pair whose cost has what was looked into so far.
 struct Examined : PossibleJoin {
-  std::uint32_t bridge = 0;  ///< its place among the bridges
   enum class Step : std::uint8_t { shape, occlusion, room } last = Step::shape;
 };
 
@@ -288,24 +288,23 @@ std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pi
   const double radius = pieces.front().radius;
   const std::vector<Obstacle> obstacles = obstacles_of(pieces);
   RoomTest room(obstacles, bending_rate, radius);
-  std::vector<Examined> queue;
+  std::vector<Examined> examined;
   for (const PossibleJoin& pair : pairs)
-    if (pair.cost < limits.cost && !(pair.length > limits.length))
-      queue.push_back({pair, static_cast<std::uint32_t>(queue.size())});
-  std::vector<std::vector<Vec3>> bridges(queue.size());  // built when they are first asked for
+    if (pair.cost < limits.cost && !(pair.length > limits.length)) examined.push_back({pair});
+  std::vector<std::vector<Vec3>> bridges(examined.size());  // built when they are first asked for
   // Best first: a pair's cost only grows as it is looked into, so most pairs need no look at all.
-  const auto later = [](const Examined& x, const Examined& y) {
-    return std::tie(x.cost, x.end_a, x.end_b) > std::tie(y.cost, y.end_a, y.end_b);
-  };
-  std::make_heap(queue.begin(), queue.end(), later);
+  using Entry = std::pair<double, std::uint32_t>;  // cost so far, place in `examined`
+  std::vector<Entry> entries;
+  for (std::uint32_t k = 0; k < examined.size(); ++k) entries.emplace_back(examined[k].cost, k);
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue({}, std::move(entries));
   std::vector<std::size_t> joins_of_end(ends.size(), 0);
   while (!queue.empty()) {
-    std::pop_heap(queue.begin(), queue.end(), later);
-    Examined pair = queue.back();
-    queue.pop_back();
+    const std::uint32_t k = queue.top().second;
+    queue.pop();
+    Examined& pair = examined[k];
     const std::uint32_t a = pair.end_a, b = pair.end_b;
     if (joins_of_end[a] >= limits.joins_per_end && joins_of_end[b] >= limits.joins_per_end) continue;
-    std::vector<Vec3>& bridge = bridges[pair.bridge];
+    std::vector<Vec3>& bridge = bridges[k];
     if (bridge.empty()) bridge = bridge_between(ends[a], ends[b], radius);
     if (pair.last != Examined::Step::room) {
       const double limit = limits.cost - pair.cost;
@@ -316,9 +315,7 @@ std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pi
         pair.cost += room.cost(bridge, pair, limit);
         pair.last = Examined::Step::room;
       }
-      if (!(pair.cost < limits.cost)) continue;
-      queue.push_back(pair);
-      std::push_heap(queue.begin(), queue.end(), later);
+      if (pair.cost < limits.cost) queue.emplace(pair.cost, k);
       continue;
     }
     ++joins_of_end[a], ++joins_of_end[b];

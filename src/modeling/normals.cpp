@@ -1,21 +1,18 @@
 #include "tubebin/modeling/normals.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
-#include "tubebin/core/wide.hpp"
+#include "modeling/lanes.hpp"
 #include "tubebin/modeling/view_grid.hpp"
 
 // The sums over neighbours are the most of the modeler's arithmetic, hence TUBEBIN_WIDE.
 
 namespace tubebin {
 namespace {
-
-constexpr std::uint32_t kLanes = 8;
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
-using Mask = std::int32_t __attribute__((vector_size(kLanes * sizeof(float))));
-
-float sum_of(const Lanes& v) { return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7])); }
 
 /// Sums over neighbours q of a point p, of d = q - p.
 struct Moments {
@@ -51,9 +48,7 @@ TUBEBIN_WIDE void add_runs(const SortedPoints& points, std::span<const Run> runs
   for (const auto& [first, last] : runs)
     for (std::uint32_t k = first; k < last; k += kLanes) {
       Lanes dx, dy, dz;
-      __builtin_memcpy(&dx, &points.x[k], sizeof dx);
-      __builtin_memcpy(&dy, &points.y[k], sizeof dy);
-      __builtin_memcpy(&dz, &points.z[k], sizeof dz);
+      load(dx, &points.x[k]), load(dy, &points.y[k]), load(dz, &points.z[k]);
       dx -= center_x, dy -= center_y, dz -= center_z;
       const Mask near = (dx * dx + dy * dy + dz * dz <= squared_radius) & (lane < static_cast<std::int32_t>(last - k));
       const Lanes wx = (Lanes)((Mask)dx & near), wy = (Lanes)((Mask)dy & near), wz = (Lanes)((Mask)dz & near);
@@ -67,80 +62,142 @@ TUBEBIN_WIDE void add_runs(const SortedPoints& points, std::span<const Run> runs
   moments.yy += sum_of(yy), moments.yz += sum_of(yz), moments.zz += sum_of(zz);
 }
 
-/// Calls visit(i, sum) for every point, where sum(wider) gathers the moments of the points within `radius`, `wider`
-/// times, of it.
-template <typename Visit>
-void for_each_neighborhood(const ViewProjection& projection, std::span<const Point> points, double radius,
-                           const Visit& visit) {
-  float nearest = std::numeric_limits<float>::infinity();
-  for (const Point& point : points) nearest = std::min(nearest, (point - projection.viewpoint()).norm());
-  // Cells of half the radius, as seen at the nearest range: the disc covers most of the 5 x 5 cells searched there,
-  // and fewer of them farther away.
-  const auto r = static_cast<float>(radius);
-  const float cell = 0.5f * r / std::max(nearest, r);
-  const ViewGrid grid(projection, points, cell);
-  const SortedPoints sorted(points, grid.order());
-  std::vector<Run> runs;
-  for (const std::uint32_t i : grid.order()) {
-    const auto image = projection(points[i]);
-    // A radian is 1 + (u^2 + v^2) / 4 units of the stereographic plane.
-    const float units = r / std::max(image.range, r) * (1.0f + 0.25f * (image.u * image.u + image.v * image.v));
-    const int reach = static_cast<int>(std::ceil(units / cell));
-    const int middle_row = grid.row(i), column = grid.column(i);
-    runs.clear();
-    for (int row = middle_row - reach; row <= middle_row + reach; ++row)
-      if (const Run run = grid.range(row, column - reach, column + reach); run.first < run.second) runs.push_back(run);
-    visit(i, [&](float wider) {
-      Moments moments;
-      add_runs(sorted, runs, points[i], wider * wider * r * r, moments);
-      return moments;
-    });
+/// The points' neighbours in space, found in the scanner's view.
+class Neighborhoods {
+ public:
+  Neighborhoods(const ViewProjection& projection, std::span<const Point> points, double radius)
+      : points_(points),
+        radius_(static_cast<float>(radius)),
+        cell_(0.5f * radius_ / std::max(nearest_range(projection, points), radius_)),
+        grid_(projection, points, cell_),
+        sorted_(points, grid_.order()) {}
+
+  /// In which one point's neighbours are mostly the next one's.
+  const std::vector<std::uint32_t>& order() const { return grid_.order(); }
+
+  /// Of the points within the radius, `wider` times, of point i, in the part of the view that the radius covers.
+  Moments around(std::size_t i, float wider) {
+    look_at(i);
+    Moments moments;
+    add_runs(sorted_, runs_, points_[i], wider * wider * radius_ * radius_, moments);
+    return moments;
   }
+
+ private:
+  /// Cells of half the radius, as seen at the nearest range: the disc covers most of the 5 x 5 cells searched there, and
+  /// fewer of them farther away.
+  static float nearest_range(const ViewProjection& projection, std::span<const Point> points) {
+    float squared = std::numeric_limits<float>::infinity();
+    for (const Point& point : points) squared = std::min(squared, (point - projection.viewpoint()).squaredNorm());
+    return std::sqrt(squared);
+  }
+
+  void look_at(std::size_t i) {
+    const ViewProjection::Image image = grid_.image(i);
+    // A radian is 1 + (u^2 + v^2) / 4 units of the stereographic plane.
+    const float units =
+        radius_ / std::max(image.range, radius_) * (1.0f + 0.25f * (image.u * image.u + image.v * image.v));
+    const Window window{grid_.row(i), grid_.column(i), static_cast<int>(std::ceil(units / cell_))};
+    if (window == window_) return;
+    window_ = window;
+    const auto [middle_row, column, reach] = window;
+    runs_.clear();
+    for (int row = middle_row - reach; row <= middle_row + reach; ++row)
+      if (const Run run = grid_.range(row, column - reach, column + reach); run.first < run.second)
+        runs_.push_back(run);
+  }
+
+  struct Window {
+    int row = 0, column = 0, reach = -1;
+    bool operator==(const Window&) const = default;
+  };
+
+  std::span<const Point> points_;
+  float radius_, cell_;
+  ViewGrid grid_;
+  SortedPoints sorted_;
+  Window window_;          ///< of the point last looked at
+  std::vector<Run> runs_;  ///< of the points in it
+};
+
+/// So many planes at a time.
+constexpr std::size_t kPlanes = 4;
+using Doubles = double __attribute__((vector_size(kPlanes * sizeof(double))));
+using DoublesMask = std::int64_t __attribute__((vector_size(kPlanes * sizeof(double))));
+
+void gather(const std::array<Moments, kPlanes>& moments, float Moments::*quantity, Doubles& lanes) {
+  for (std::size_t k = 0; k < kPlanes; ++k) lanes[k] = double(moments[k].*quantity);
 }
 
-/// The direction across the plane through the neighbours: the eigenvector of their covariance's smallest eigenvalue,
+/// The directions across the planes through neighbours: the eigenvector of their covariance's smallest eigenvalue,
 /// which is the largest one's of its adjugate: power iteration from its longest column. With neighbours that scatter a
 /// third as far across the plane as along it, what five powers leave of the others is 9^-5.
 /// Zero where the neighbours are too few, or too much in a line, to span a plane.
-Point plane_normal(const Moments& m, const Point& to_viewpoint) {
-  if (m.count < 5.0f) return Point::Zero();
-  const double xx = m.xx - m.x * m.x / m.count, xy = m.xy - m.x * m.y / m.count, xz = m.xz - m.x * m.z / m.count;
-  const double yy = m.yy - m.y * m.y / m.count, yz = m.yz - m.y * m.z / m.count, zz = m.zz - m.z * m.z / m.count;
-  Eigen::Matrix3d adjugate;
-  adjugate << yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy,  //
-      xz * yz - xy * zz, xx * zz - xz * xz, xy * xz - xx * yz,          //
-      xy * yz - xz * yy, xy * xz - xx * yz, xx * yy - xy * xy;
+TUBEBIN_WIDE void plane_normals(const std::array<Moments, kPlanes>& moments,
+                                const std::array<Point, kPlanes>& to_viewpoint, std::array<Point, kPlanes>& normals) {
+  Doubles n, x, y, z, xx, xy, xz, yy, yz, zz;
+  gather(moments, &Moments::count, n), gather(moments, &Moments::x, x), gather(moments, &Moments::y, y);
+  gather(moments, &Moments::z, z), gather(moments, &Moments::xx, xx), gather(moments, &Moments::xy, xy);
+  gather(moments, &Moments::xz, xz), gather(moments, &Moments::yy, yy), gather(moments, &Moments::yz, yz);
+  gather(moments, &Moments::zz, zz);
+  xx -= x * x / n, xy -= x * y / n, xz -= x * z / n, yy -= y * y / n, yz -= y * z / n, zz -= z * z / n;
+  Doubles a = yy * zz - yz * yz, b = xz * yz - xy * zz, c = xy * yz - xz * yy;  // the adjugate's rows: a b c,
+  Doubles d = xx * zz - xz * xz, e = xy * xz - xx * yz, f = xx * yy - xy * xy;  // b d e, c e f
   // Its trace is the sum of the eigenvalues' products of two: with a, b and next to nothing, a b. A line of neighbours
   // has b < 0.05 a, and so a b / (a + b)^2 below 0.05 / 1.05^2.
-  const double trace = xx + yy + zz;
-  if (!(adjugate.trace() > 0.05 / (1.05 * 1.05) * trace * trace)) return Point::Zero();
-  Eigen::Index column = 0;
-  adjugate.diagonal().maxCoeff(&column);
-  Vec3 direction = adjugate.col(column).normalized();
-  adjugate /= adjugate.trace();
-  for (int power = 0; power < 4; ++power) direction = adjugate * direction;
-  const Point normal = direction.normalized().cast<float>();
-  return normal.dot(to_viewpoint) < 0.0f ? Point(-normal) : normal;
+  const Doubles trace = xx + yy + zz, adjugate_trace = a + d + f;
+  const DoublesMask is_plane = (n >= 5.0) & (adjugate_trace > 0.05 / (1.05 * 1.05) * trace * trace);
+  const Doubles scale = 1.0 / adjugate_trace;
+  a *= scale, b *= scale, c *= scale, d *= scale, e *= scale, f *= scale;
+  const DoublesMask second = d > a;
+  x = second ? b : a, y = second ? d : b, z = second ? e : c;
+  const DoublesMask third = f > (second ? d : a);
+  x = third ? c : x, y = third ? e : y, z = third ? f : z;
+  for (int power = 0; power < 4; ++power) {
+    const Doubles x_next = a * x + b * y + c * z, y_next = b * x + d * y + e * z;
+    z = c * x + e * y + f * z, x = x_next, y = y_next;
+  }
+  for (std::size_t k = 0; k < kPlanes; ++k) {
+    if (!is_plane[k]) {
+      normals[k] = Point::Zero();
+      continue;
+    }
+    const Point normal = Vec3(x[k], y[k], z[k]).normalized().cast<float>();
+    normals[k] = normal.dot(to_viewpoint[k]) < 0.0f ? Point(-normal) : normal;
+  }
 }
 
 }  // namespace
 
 std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<const Point> points, double radius) {
   std::vector<Point> normals(points.size(), Point::Zero());
+  if (points.empty()) return normals;
+  Neighborhoods neighborhoods(projection, points, radius);
+  std::vector<std::uint32_t> left = neighborhoods.order();
   // Where the surface is seen at a flat angle, rows of points that are neighbours in the view lie far apart in space:
   // a wider ball about the same part of the view finds them.
-  for_each_neighborhood(projection, points, radius, [&](std::size_t i, const auto& sum) {
-    const Point to_viewpoint = projection.viewpoint() - points[i];
-    for (float wider = 1.0f; wider <= 4.0f && normals[i].isZero(); wider *= 2.0f)
-      normals[i] = plane_normal(sum(wider), to_viewpoint);
-  });
+  for (float wider = 1.0f; wider <= 4.0f; wider *= 2.0f) {
+    std::array<Moments, kPlanes> moments;
+    std::array<Point, kPlanes> to_viewpoint, found;
+    for (std::size_t first = 0; first < left.size(); first += kPlanes) {
+      const std::size_t count = std::min(kPlanes, left.size() - first);
+      for (std::size_t k = 0; k < kPlanes; ++k) {
+        const std::uint32_t i = left[first + std::min(k, count - 1)];
+        moments[k] = neighborhoods.around(i, wider);
+        to_viewpoint[k] = projection.viewpoint() - points[i];
+      }
+      plane_normals(moments, to_viewpoint, found);
+      for (std::size_t k = 0; k < count; ++k) normals[left[first + k]] = found[k];
+    }
+    std::erase_if(left, [&](std::uint32_t i) { return !normals[i].isZero(); });
+  }
   return normals;
 }
 
 std::vector<int> count_neighbors(const ViewProjection& projection, std::span<const Point> points, double radius) {
   std::vector<int> counts(points.size(), 0);
-  for_each_neighborhood(projection, points, radius,
-                        [&](std::size_t i, const auto& sum) { counts[i] = static_cast<int>(sum(1.0f).count); });
+  Neighborhoods neighborhoods(projection, points, radius);
+  for (const std::uint32_t i : neighborhoods.order()) counts[i] = static_cast<int>(neighborhoods.around(i, 1.0f).count);
   return counts;
 }
 

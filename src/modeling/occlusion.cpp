@@ -6,14 +6,6 @@
 namespace tubebin {
 namespace {
 
-std::vector<std::uint32_t> measured_points(std::span<const Point> points) {
-  std::vector<std::uint32_t> selected;
-  selected.reserve(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (is_finite(points[i])) selected.push_back(i);
-  return selected;
-}
-
 float view_cell(const ModelingInput& input, const ViewProjection& projection, double spacing) {
   // Two spacings a cell: few cells of a surface are empty by chance, and a tube's gap is many cells wide still.
   const Vec3 middle = input.world_from_bin.translation();
@@ -27,7 +19,7 @@ OcclusionTest::OcclusionTest(const ModelingInput& input, const ViewProjection& p
                              double radius)
     : viewpoint_(projection.viewpoint().cast<double>()),
       radius_(radius),
-      image_(projection, input.points, measured_points(input.points), view_cell(input, projection, spacing)),
+      image_(projection, input.points, view_cell(input, projection, spacing)),
       bin_(input.bin),
       bin_from_world_(input.world_from_bin.inverse()) {}
 

@@ -18,24 +18,22 @@ struct Extent {
   float u_min = std::numeric_limits<float>::infinity(), v_min = u_min;
   float u_max = -u_min, v_max = -u_min;
 
-  void add(const ViewProjection::Image& image) {
-    u_min = std::min(u_min, image.u);
-    v_min = std::min(v_min, image.v);
-    u_max = std::max(u_max, image.u);
-    v_max = std::max(v_max, image.v);
+  explicit Extent(const ViewProjection::Images& images) {
+    for (const float u : images.u) u_min = std::min(u_min, u), u_max = std::max(u_max, u);
+    for (const float v : images.v) v_min = std::min(v_min, v), v_max = std::max(v_max, v);
   }
   double area() const { return double(u_max - u_min) * double(v_max - v_min); }
 };
 
 /// How many cells of this size hold a point.
-std::size_t count_occupied(const std::vector<ViewProjection::Image>& images, const Extent& extent, float cell) {
+std::size_t count_occupied(const ViewProjection::Images& images, const Extent& extent, float cell) {
   const auto columns = static_cast<std::size_t>((extent.u_max - extent.u_min) / cell) + 1;
   const auto rows = static_cast<std::size_t>((extent.v_max - extent.v_min) / cell) + 1;
   std::vector<bool> is_occupied(columns * rows, false);
   std::size_t count = 0;
-  for (const auto& image : images) {
-    const auto column = std::min(static_cast<std::size_t>((image.u - extent.u_min) / cell), columns - 1);
-    const auto row = std::min(static_cast<std::size_t>((image.v - extent.v_min) / cell), rows - 1);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const auto column = std::min(static_cast<std::size_t>((images.u[i] - extent.u_min) / cell), columns - 1);
+    const auto row = std::min(static_cast<std::size_t>((images.v[i] - extent.v_min) / cell), rows - 1);
     auto occupied = is_occupied[row * columns + column];
     if (!occupied) occupied = true, ++count;
   }
@@ -44,24 +42,22 @@ std::size_t count_occupied(const std::vector<ViewProjection::Image>& images, con
 
 }  // namespace
 
-ViewGrid::ViewGrid(const ViewProjection& projection, std::span<const Point> points, float cell) {
-  std::vector<ViewProjection::Image> images;
-  images.reserve(points.size());
-  Extent extent;
-  for (const Point& point : points) extent.add(images.emplace_back(projection(point)));
+ViewGrid::ViewGrid(ViewProjection::Images images, std::span<const Point> points, float cell)
+    : images_(std::move(images)) {
   if (points.empty()) {
     starts_.assign(2, 0);
     return;
   }
+  const Extent extent(images_);
   cell = std::max(cell, static_cast<float>(std::sqrt(extent.area() / kMostCells)));
   columns_ = static_cast<std::uint32_t>((extent.u_max - extent.u_min) / cell) + 1;
   rows_ = static_cast<std::uint32_t>((extent.v_max - extent.v_min) / cell) + 1;
 
   starts_.assign(std::size_t{columns_} * rows_ + 1, 0);
   cells_.reserve(points.size());
-  for (const auto& image : images) {
-    const auto column = static_cast<std::uint32_t>((image.u - extent.u_min) / cell);
-    const auto row = static_cast<std::uint32_t>((image.v - extent.v_min) / cell);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto column = static_cast<std::uint32_t>((images_.u[i] - extent.u_min) / cell);
+    const auto row = static_cast<std::uint32_t>((images_.v[i] - extent.v_min) / cell);
     cells_.push_back(std::min(row, rows_ - 1) * columns_ + std::min(column, columns_ - 1));
     ++starts_[cells_.back() + 1];
   }
@@ -89,23 +85,16 @@ std::pair<std::uint32_t, std::uint32_t> ViewGrid::range(int row, int first_colum
           starts_[base + static_cast<std::size_t>(last_column) + 1]};
 }
 
-double estimate_spacing(const ViewProjection& projection, std::span<const Point> points) {
-  if (points.empty()) return 0.0;
-  Extent extent;
-  std::vector<ViewProjection::Image> images;
-  std::vector<float> ranges;
-  images.reserve(points.size());
-  ranges.reserve(points.size());
-  for (const Point& point : points) {
-    extent.add(images.emplace_back(projection(point)));
-    ranges.push_back(images.back().range);
-  }
+double estimate_spacing(const ViewProjection::Images& images) {
+  if (images.size() == 0) return 0.0;
+  const Extent extent(images);
+  std::vector<float> ranges = images.range;
   const double range = median(ranges);
 
   // With about four points a cell few cells of a surface are empty by chance (e^-4 = 2 %), and the cells that a
   // surface covers only partly are still a small part of all.
   constexpr double kPointsPerCell = 4.0;
-  const auto count = static_cast<double>(points.size());
+  const auto count = static_cast<double>(images.size());
   double cell = std::sqrt(std::max(extent.area(), 1e-12) * kPointsPerCell / count);
   double area = extent.area();
   for (int round = 0; round < 3; ++round) {

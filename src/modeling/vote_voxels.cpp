@@ -22,19 +22,13 @@ VoteVoxels::VoteVoxels(std::span<const Point> votes, double voxel, std::size_t l
   table_.assign(std::bit_ceil(2 * votes.size() + 2), kNone);
   voxel_of_vote_.reserve(votes.size());
   const auto inverse = static_cast<float>(1.0 / voxel);
+  std::uint32_t index = kNone;
   for (const Point& vote : votes) {
     const Key key{static_cast<std::int32_t>(std::floor(vote.x() * inverse)),
                   static_cast<std::int32_t>(std::floor(vote.y() * inverse)),
                   static_cast<std::int32_t>(std::floor(vote.z() * inverse))};
-    std::size_t slot = hash(key.x, key.y, key.z) & (table_.size() - 1);
-    while (table_[slot] != kNone && !(keys_[table_[slot]] == key)) slot = (slot + 1) & (table_.size() - 1);
-    if (table_[slot] == kNone) {
-      table_[slot] = static_cast<std::uint32_t>(keys_.size());
-      keys_.push_back(key);
-      counts_.push_back(0);
-      means_.push_back(Point::Zero());
-    }
-    const std::uint32_t index = table_[slot];
+    // Votes that follow each other mostly share a voxel.
+    if (index == kNone || !(keys_[index] == key)) index = find_or_add(key);
     ++counts_[index];
     means_[index] += vote;
     voxel_of_vote_.push_back(index);
@@ -52,21 +46,30 @@ VoteVoxels::VoteVoxels(std::span<const Point> votes, double voxel, std::size_t l
   keys_.resize(size);
   means_.resize(size);
   counts_.resize(size);
-  for (std::uint32_t& index : voxel_of_vote_) index = kept[index];
+  for (std::uint32_t& voxel_of : voxel_of_vote_) voxel_of = kept[voxel_of];
   // Taken out of an open-addressing table, a key would break the chains of others: build it anew.
   table_.assign(std::bit_ceil(2 * std::size_t{size} + 2), kNone);
-  for (std::uint32_t i = 0; i < size; ++i) {
-    std::size_t slot = hash(keys_[i].x, keys_[i].y, keys_[i].z) & (table_.size() - 1);
-    while (table_[slot] != kNone) slot = (slot + 1) & (table_.size() - 1);
-    table_[slot] = i;
-  }
+  for (std::uint32_t i = 0; i < size; ++i) table_[slot_of(keys_[i])] = i;
 }
 
-std::uint32_t VoteVoxels::find(const Key& key) const {
+std::size_t VoteVoxels::slot_of(const Key& key) const {
   std::size_t slot = hash(key.x, key.y, key.z) & (table_.size() - 1);
   while (table_[slot] != kNone && !(keys_[table_[slot]] == key)) slot = (slot + 1) & (table_.size() - 1);
-  return table_[slot];
+  return slot;
 }
+
+std::uint32_t VoteVoxels::find_or_add(const Key& key) {
+  std::uint32_t& index = table_[slot_of(key)];
+  if (index == kNone) {
+    index = static_cast<std::uint32_t>(keys_.size());
+    keys_.push_back(key);
+    counts_.push_back(0);
+    means_.push_back(Point::Zero());
+  }
+  return index;
+}
+
+std::uint32_t VoteVoxels::find(const Key& key) const { return table_[slot_of(key)]; }
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> VoteVoxels::links(double link) const {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;

@@ -1,6 +1,8 @@
 /// The scene as the scanner saw it: directions from the viewpoint as points of a plane, and the nearest range in each.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -18,19 +20,43 @@ class ViewProjection {
     float range;  ///< distance from the viewpoint, metres
   };
 
+  /// Of many points, one array a quantity.
+  struct Images {
+    std::vector<float> u, v, range;
+
+    std::size_t size() const { return u.size(); }
+    Image operator[](std::size_t point) const { return {u[point], v[point], range[point]}; }
+  };
+
   /// The view axis is the sensor's z axis, or, where the points do not lie in front of it (a pose that states a
   /// position alone), the direction to the middle of the points.
   ViewProjection(const Pose& world_from_sensor, const Point& middle_of_points);
 
   Image operator()(const Point& point_in_world) const {
-    const Point p = axes_from_world_ * (point_in_world - viewpoint_);
-    const float range = p.norm();
-    const float scale = 2.0f / std::max(range + p.z(), 1e-6f * range + 1e-12f);
-    return {p.x() * scale, p.y() * scale, range};
+    const Point offset = point_in_world - viewpoint_;
+    return image_of(offset.x(), offset.y(), offset.z());
   }
+  Images images(std::span<const Point> points) const {
+    Images images;
+    project(points, images);
+    return images;
+  }
+  /// As images(), into memory that is there.
+  void project(std::span<const Point> points, Images& images) const;
   const Point& viewpoint() const { return viewpoint_; }
 
  private:
+  /// Of an offset from the viewpoint, in world axes.
+  Image image_of(float x, float y, float z) const {
+    const auto& axes = axes_from_world_;
+    const float right = axes(0, 0) * x + axes(0, 1) * y + axes(0, 2) * z;
+    const float down = axes(1, 0) * x + axes(1, 1) * y + axes(1, 2) * z;
+    const float ahead = axes(2, 0) * x + axes(2, 1) * y + axes(2, 2) * z;
+    const float range = std::sqrt(right * right + down * down + ahead * ahead);
+    const float scale = 2.0f / std::max(range + ahead, 1e-6f * range + 1e-12f);
+    return {right * scale, down * scale, range};
+  }
+
   Point viewpoint_;
   Eigen::Matrix3f axes_from_world_;
 };
@@ -38,9 +64,8 @@ class ViewProjection {
 /// Nearest measured range in every cell of the view.
 class RangeImage {
  public:
-  /// `cell` is the cells' size in the plane of the projection; `selected` are indices into `points`.
-  RangeImage(const ViewProjection& projection, std::span<const Point> points, std::span<const std::uint32_t> selected,
-             float cell);
+  /// `cell` is the cells' size in the plane of the projection. Points that are not finite are left out.
+  RangeImage(const ViewProjection& projection, std::span<const Point> points, float cell);
 
   enum class Evidence {
     hidden,   ///< the scanner measured something nearer: what is at the point cannot be seen

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tubebin/cloud/cloud.hpp"
+#include "tubebin/modeling/filtering.hpp"
 
 namespace tubebin {
 
@@ -26,8 +26,8 @@ SurfaceFit fit_surface(std::vector<Vec3>& nodes, std::span<const SurfacePoint> p
 /// Appends nodes, about a radius apart, as far as the points show that the tube goes on from its last node without a
 /// gap, and ends the last cylinder where they end. A point shows it if it lies on the next cylinder's side and its
 /// normal stands across it; a flat end's do not.
-/// `own` are the points of the piece, `loose` those of none, in order of x.
-void grow_end(std::vector<Vec3>& nodes, std::span<const SurfacePoint> own, std::span<const SurfacePoint> loose,
-              double radius, double spacing, const Vec3& viewpoint);
+/// `own` are the cloud's points of the piece, `loose` those of none, in order of x.
+void grow_end(std::vector<Vec3>& nodes, const FilteredCloud& cloud, std::span<const std::uint32_t> own,
+              std::span<const SurfacePoint> loose, double radius, const Vec3& viewpoint);
 
 }  // namespace tubebin

@@ -30,7 +30,10 @@ class VoteVoxels {
     std::int32_t x, y, z;
     friend bool operator==(const Key&, const Key&) = default;
   };
+  /// Where in the table the key is, or would be.
+  std::size_t slot_of(const Key& key) const;
   std::uint32_t find(const Key& key) const;
+  std::uint32_t find_or_add(const Key& key);
 
   std::vector<Point> means_;
   std::vector<std::size_t> counts_;

@@ -1,0 +1,188 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "tubebin/core/random.hpp"
+#include "tubebin/modeling/normals.hpp"
+#include "tubebin/modeling/surface_fitting.hpp"
+#include "tubebin/modeling/tube_model.hpp"
+#include "tubebin/modeling/view_grid.hpp"
+#include "tubebin/modeling/vote_voxels.hpp"
+
+namespace tubebin {
+namespace {
+
+/// A scanner a metre above the origin that looks down.
+ViewProjection view_from_above() {
+  Pose pose = Pose::Identity();
+  pose.linear() = Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitX()).toRotationMatrix();
+  pose.translation() = Vec3(0.0, 0.0, 1.0);
+  return {pose, Point::Zero()};
+}
+
+/// The upper side of a tube of radius 12.5 mm along x, and its normals.
+struct HalfTube {
+  static constexpr double kRadius = 0.0125;
+  std::vector<Point> points, normals;
+
+  explicit HalfTube(std::size_t count) {
+    Random random(7);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double angle = random.uniform(-1.2, 1.2);
+      const Vec3 normal(0.0, std::sin(angle), std::cos(angle));
+      points.push_back((Vec3(random.uniform(-0.05, 0.05), 0.0, 0.0) + kRadius * normal).cast<float>());
+      normals.push_back(normal.cast<float>());
+    }
+  }
+};
+
+/// The plane's normal through all points within `radius` of points[i], by an eigensolver.
+Point plane_through_neighbors(const std::vector<Point>& points, std::size_t i, double radius) {
+  Vec3 mean = Vec3::Zero();
+  std::vector<Vec3> near;
+  for (const Point& point : points)
+    if ((point - points[i]).norm() <= static_cast<float>(radius)) near.push_back(point.cast<double>());
+  for (const Vec3& point : near) mean += point / static_cast<double>(near.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Vec3& point : near) covariance += (point - mean) * (point - mean).transpose();
+  const Vec3 normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(0);
+  return (normal.z() < 0.0 ? Vec3(-normal) : normal).cast<float>();
+}
+
+TEST(ViewProjection, OfManyPointsIsThatOfEach) {
+  const ViewProjection projection = view_from_above();
+  for (const std::size_t count : {0, 1, 7, 8, 9, 100}) {
+    const std::vector<Point> points = HalfTube(count).points;
+    const ViewProjection::Images images = projection.images(points);
+    ASSERT_EQ(images.size(), count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const ViewProjection::Image image = projection(points[i]);
+      EXPECT_EQ(images.u[i], image.u);
+      EXPECT_EQ(images.v[i], image.v);
+      EXPECT_EQ(images.range[i], image.range);
+      EXPECT_NEAR(image.range, (points[i] - projection.viewpoint()).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(RangeImage, LeavesOutWhatIsNotFinite) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+  // Each would lie right in front of the scanner, were its other coordinates believed.
+  const std::vector<Point> points = {{0.0f, 0.0f, 0.0f},   {kNaN, 0.0f, 0.9f},      {0.0f, kNaN, 0.9f},
+                                     {0.0f, 0.0f, kNaN},   {0.0f, kInfinity, 0.9f}, {0.0f, 0.0f, -kInfinity},
+                                     {0.01f, 0.01f, 0.01f}};
+  const RangeImage image(view_from_above(), points, 0.002f);
+  EXPECT_EQ(image.evidence({0.0f, 0.0f, 0.0f}, 0.001f), RangeImage::Evidence::surface);
+  EXPECT_EQ(image.evidence({0.0f, 0.0f, -0.1f}, 0.001f), RangeImage::Evidence::hidden);
+  EXPECT_EQ(image.evidence({0.0f, 0.0f, 0.1f}, 0.001f), RangeImage::Evidence::empty);
+  EXPECT_EQ(RangeImage(view_from_above(), std::span(points).subspan(1, 5), 0.002f).evidence({0.0f, 0.0f, 0.0f}, 0.001f),
+            RangeImage::Evidence::empty);
+}
+
+TEST(Normals, AreThoseOfAnEigensolver) {
+  constexpr double kReach = 0.004;
+  const HalfTube tube(3000);
+  const std::vector<Point> normals = estimate_normals(view_from_above(), tube.points, kReach);
+  for (std::size_t i = 0; i < tube.points.size(); i += 10) {
+    ASSERT_NEAR(normals[i].norm(), 1.0f, 1e-5f);
+    EXPECT_GT(normals[i].dot(plane_through_neighbors(tube.points, i, kReach)), 0.9995f);
+    EXPECT_GT(normals[i].dot(tube.normals[i]), 0.9f);
+  }
+}
+
+TEST(Normals, AreZeroWhereNeighborsSpanNoPlane) {
+  std::vector<Point> points = {{0.0f, 0.0f, 0.0f}, {0.001f, 0.0f, 0.0f}, {0.0f, 0.001f, 0.0f}};
+  for (int i = 0; i < 20; ++i) points.emplace_back(0.1f + 0.0005f * static_cast<float>(i), 0.1f, 0.0f);
+  for (const Point& normal : estimate_normals(view_from_above(), points, 0.004)) EXPECT_TRUE(normal.isZero());
+  EXPECT_TRUE(estimate_normals(view_from_above(), {}, 0.004).empty());
+}
+
+TEST(Normals, CountTheNeighborsOfEachPoint) {
+  constexpr double kReach = 0.003;
+  const std::vector<Point> points = HalfTube(500).points;
+  const std::vector<int> counts = count_neighbors(view_from_above(), points, kReach);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto within = [&](const Point& p) { return (p - points[i]).norm() <= static_cast<float>(kReach); };
+    EXPECT_EQ(counts[i], std::count_if(points.begin(), points.end(), within));
+  }
+}
+
+TEST(VoteVoxels, HoldTheMeansOfTheirVotes) {
+  constexpr float kVoxel = 0.004f;
+  const std::vector<Point> votes = HalfTube(2000).points;
+  const VoteVoxels voxels(votes, kVoxel, 3);
+  std::map<std::array<int, 3>, std::vector<Point>> cells;
+  const auto cell_of = [&](const Point& vote) {
+    const Eigen::Array3f cell = (vote.array() * (1.0f / kVoxel)).floor();
+    return std::array{static_cast<int>(cell.x()), static_cast<int>(cell.y()), static_cast<int>(cell.z())};
+  };
+  for (const Point& vote : votes) cells[cell_of(vote)].push_back(vote);
+  for (std::size_t i = 0; i < votes.size(); ++i) {
+    const std::vector<Point>& own = cells[cell_of(votes[i])];
+    if (own.size() < 3) {
+      EXPECT_EQ(voxels.voxel_of(i), VoteVoxels::kNone);
+      continue;
+    }
+    Point mean = Point::Zero();
+    for (const Point& vote : own) mean += vote / static_cast<float>(own.size());
+    EXPECT_EQ(voxels.count(voxels.voxel_of(i)), own.size());
+    EXPECT_LT((voxels.mean(voxels.voxel_of(i)) - mean).norm(), 1e-7f);
+  }
+}
+
+/// A polyline's upper side: at each place along it, points around the half that faces up.
+std::vector<SurfacePoint> upper_side(const std::vector<Vec3>& nodes, double radius) {
+  std::vector<SurfacePoint> points;
+  for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+    const Vec3 along = (nodes[k + 1] - nodes[k]).normalized(), side = along.cross(Vec3::UnitZ()).normalized();
+    for (double t = 0.01; t < 1.0; t += 0.02)
+      for (double angle = -1.2; angle <= 1.2; angle += 0.2) {
+        const Vec3 normal = std::sin(angle) * side + std::cos(angle) * side.cross(along);
+        points.push_back({nodes[k] + t * (nodes[k + 1] - nodes[k]) + radius * normal, normal});
+      }
+  }
+  return points;
+}
+
+TEST(SurfaceFitting, FindsThePolylineThatPointsLieAbout) {
+  const std::vector<Vec3> truth = {{0.0, 0.0, 0.0}, {0.1, 0.0, 0.0}, {0.18, 0.06, 0.0}, {0.2, 0.15, 0.0}};
+  std::vector<Vec3> nodes = truth;
+  for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] += Vec3(0.0, k % 2 == 0 ? 0.002 : -0.002, 0.001);
+  const SurfaceFit fit = fit_surface(nodes, upper_side(truth, HalfTube::kRadius), HalfTube::kRadius);
+  EXPECT_LT(fit.sigma, 1e-5);
+  // Where both neighbours pin a node down. An end is free to slide along its cylinder.
+  for (const std::size_t k : {1, 2}) EXPECT_LT((nodes[k] - truth[k]).norm(), 1e-4);
+}
+
+TEST(SurfaceFitting, GrowsAnEndAsFarAsItsPointsReach) {
+  const std::vector<Vec3> truth = {{0.0, 0.0, 0.0}, {0.1, 0.0, 0.0}, {0.18, 0.05, 0.0}};
+  FilteredCloud cloud{.source = {}, .points = {}, .normals = {}, .spacing = 0.002};
+  Segment own;
+  for (const SurfacePoint& point : upper_side(truth, HalfTube::kRadius)) {
+    own.push_back(static_cast<std::uint32_t>(cloud.points.size()));
+    cloud.points.push_back(point.position.cast<float>());
+    cloud.normals.push_back(point.normal.cast<float>());
+  }
+  std::vector<Vec3> nodes = {{0.01, 0.0, 0.0}, {0.05, 0.0, 0.0}};
+  grow_end(nodes, cloud, own, {}, HalfTube::kRadius, Vec3(0.0, 0.0, 1.0));
+  const Vec3 last_points = truth[1] + 0.99 * (truth[2] - truth[1]);
+  EXPECT_LT((nodes.back() - last_points).norm(), 0.003);
+  for (const Vec3& node : nodes) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k + 1 < truth.size(); ++k) {
+      const Vec3 axis = truth[k + 1] - truth[k];
+      const double t = std::clamp((node - truth[k]).dot(axis) / axis.squaredNorm(), 0.0, 1.0);
+      nearest = std::min(nearest, (node - truth[k] - t * axis).norm());
+    }
+    EXPECT_LT(nearest, 0.1 * HalfTube::kRadius);
+  }
+}
+
+}  // namespace
+}  // namespace tubebin
