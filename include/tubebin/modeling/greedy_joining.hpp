@@ -9,7 +9,7 @@
 namespace tubebin {
 
 struct GreedyJoiningOptions {
-  double gap_max = 0.08;        ///< metres between two endpoints
+  double gap_max = 0.1;         ///< metres between two endpoints
   double angle_max_deg = 60.0;  ///< between each axis and the line that joins the endpoints
   double angle_cost = 0.002;    ///< metres a degree
   double length_max = 0.6;      ///< metres, of a whole tube; the tubes' 0.5 and what the estimates are off
