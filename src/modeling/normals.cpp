@@ -84,8 +84,6 @@ class Neighborhoods {
   }
 
  private:
-  /// Cells of half the radius, as seen at the nearest range: the disc covers most of the 5 x 5 cells searched there, and
-  /// fewer of them farther away.
   static float nearest_range(const ViewProjection& projection, std::span<const Point> points) {
     float squared = std::numeric_limits<float>::infinity();
     for (const Point& point : points) squared = std::min(squared, (point - projection.viewpoint()).squaredNorm());
@@ -113,7 +111,10 @@ class Neighborhoods {
   };
 
   std::span<const Point> points_;
-  float radius_, cell_;
+  float radius_;
+  /// Half the radius, as seen at the nearest range: the disc covers most of the 5 x 5 cells searched there, and fewer of
+  /// them farther away.
+  float cell_;
   ViewGrid grid_;
   SortedPoints sorted_;
   Window window_;          ///< of the point last looked at
