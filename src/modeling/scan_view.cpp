@@ -27,9 +27,8 @@ namespace {
 /// Plain arrays that do not overlap, of which vector instructions are made.
 TUBEBIN_WIDE void project_arrays(const ViewProjection& projection, const Point* __restrict points, std::size_t count,
                                  float* __restrict u, float* __restrict v, float* __restrict range) {
-  const ViewProjection own = projection;
   for (std::size_t i = 0; i < count; ++i) {
-    const ViewProjection::Image image = own(points[i]);
+    const ViewProjection::Image image = projection(points[i]);
     u[i] = image.u, v[i] = image.v, range[i] = image.range;
   }
 }

@@ -67,7 +67,7 @@ Foot nearest_foot(const std::vector<Axis>& axes, const Vec3& p, std::size_t firs
 
 /// As the nodes move little from step to step, a point's foot stays on its cylinder or goes to one beside it.
 Foot follow_foot(const std::vector<Axis>& axes, const Vec3& p, std::size_t cylinder) {
-  const Foot foot = foot_on(axes, p, cylinder);
+  Foot foot = foot_on(axes, p, cylinder);
   // Cylinders that turn by less than 90 degrees are no nearer to a point whose foot is farther from the nodes than it is
   // from the axis.
   const double from_node = std::min(foot.t, 1.0 - foot.t);
