@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "modeling/boxed_curve.hpp"
+#include "tubebin/modeling/end_growth.hpp"
 #include "tubebin/modeling/surface_fitting.hpp"
 
 namespace tubebin {

@@ -33,15 +33,6 @@ TUBEBIN_WIDE void project_arrays(const ViewProjection& projection, const Point* 
   }
 }
 
-}  // namespace
-
-void ViewProjection::project(std::span<const Point> points, Images& images) const {
-  for (auto* quantity : {&images.u, &images.v, &images.range}) quantity->resize(points.size());
-  project_arrays(*this, points.data(), points.size(), images.u.data(), images.v.data(), images.range.data());
-}
-
-namespace {
-
 /// Calls visit(image) for every point that is finite.
 template <typename Visit>
 void for_each_image(const ViewProjection& projection, std::span<const Point> points, const Visit& visit) {
@@ -56,6 +47,11 @@ void for_each_image(const ViewProjection& projection, std::span<const Point> poi
 }
 
 }  // namespace
+
+void ViewProjection::project(std::span<const Point> points, Images& images) const {
+  for (auto* quantity : {&images.u, &images.v, &images.range}) quantity->resize(points.size());
+  project_arrays(*this, points.data(), points.size(), images.u.data(), images.v.data(), images.range.data());
+}
 
 RangeImage::RangeImage(const ViewProjection& projection, std::span<const Point> points, float cell)
     : projection_(projection), inverse_cell_(1.0f / cell) {

@@ -8,7 +8,9 @@
 #include <map>
 #include <numbers>
 
+#include "modeling/built_scene.hpp"
 #include "tubebin/core/random.hpp"
+#include "tubebin/modeling/end_growth.hpp"
 #include "tubebin/modeling/normals.hpp"
 #include "tubebin/modeling/surface_fitting.hpp"
 #include "tubebin/modeling/tube_model.hpp"
@@ -19,16 +21,10 @@ namespace tubebin {
 namespace {
 
 /// A scanner a metre above the origin that looks down.
-ViewProjection view_from_above() {
-  Pose pose = Pose::Identity();
-  pose.linear() = Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitX()).toRotationMatrix();
-  pose.translation() = Vec3(0.0, 0.0, 1.0);
-  return {pose, Point::Zero()};
-}
+ViewProjection view_from_above() { return {make_pose(Quat(0, 1, 0, 0), {0, 0, 1}), Point::Zero()}; }
 
-/// The upper side of a tube of radius 12.5 mm along x, and its normals.
+/// The upper side of a tube of kRadius along x, and its normals.
 struct HalfTube {
-  static constexpr double kRadius = 0.0125;
   std::vector<Point> points, normals;
 
   explicit HalfTube(std::size_t count) {
@@ -154,7 +150,7 @@ TEST(SurfaceFitting, FindsThePolylineThatPointsLieAbout) {
   const std::vector<Vec3> truth = {{0.0, 0.0, 0.0}, {0.1, 0.0, 0.0}, {0.18, 0.06, 0.0}, {0.2, 0.15, 0.0}};
   std::vector<Vec3> nodes = truth;
   for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] += Vec3(0.0, k % 2 == 0 ? 0.002 : -0.002, 0.001);
-  const SurfaceFit fit = fit_surface(nodes, upper_side(truth, HalfTube::kRadius), HalfTube::kRadius);
+  const SurfaceFit fit = fit_surface(nodes, upper_side(truth, kRadius), kRadius);
   EXPECT_LT(fit.sigma, 1e-5);
   // Where both neighbours pin a node down. An end is free to slide along its cylinder.
   for (const std::size_t k : {1, 2}) EXPECT_LT((nodes[k] - truth[k]).norm(), 1e-4);
@@ -164,24 +160,16 @@ TEST(SurfaceFitting, GrowsAnEndAsFarAsItsPointsReach) {
   const std::vector<Vec3> truth = {{0.0, 0.0, 0.0}, {0.1, 0.0, 0.0}, {0.18, 0.05, 0.0}};
   FilteredCloud cloud{.source = {}, .points = {}, .normals = {}, .spacing = 0.002};
   Segment own;
-  for (const SurfacePoint& point : upper_side(truth, HalfTube::kRadius)) {
+  for (const SurfacePoint& point : upper_side(truth, kRadius)) {
     own.push_back(static_cast<std::uint32_t>(cloud.points.size()));
     cloud.points.push_back(point.position.cast<float>());
     cloud.normals.push_back(point.normal.cast<float>());
   }
   std::vector<Vec3> nodes = {{0.01, 0.0, 0.0}, {0.05, 0.0, 0.0}};
-  grow_end(nodes, cloud, own, {}, HalfTube::kRadius, Vec3(0.0, 0.0, 1.0));
+  grow_end(nodes, cloud, own, {}, kRadius, Vec3(0.0, 0.0, 1.0));
   const Vec3 last_points = truth[1] + 0.99 * (truth[2] - truth[1]);
   EXPECT_LT((nodes.back() - last_points).norm(), 0.003);
-  for (const Vec3& node : nodes) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k + 1 < truth.size(); ++k) {
-      const Vec3 axis = truth[k + 1] - truth[k];
-      const double t = std::clamp((node - truth[k]).dot(axis) / axis.squaredNorm(), 0.0, 1.0);
-      nearest = std::min(nearest, (node - truth[k] - t * axis).norm());
-    }
-    EXPECT_LT(nearest, 0.1 * HalfTube::kRadius);
-  }
+  for (const Vec3& node : nodes) EXPECT_LT(distance_to_polyline(node, truth), 0.1 * kRadius);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tubebin/modeling/filtering.hpp"
+#include "tubebin/cloud/cloud.hpp"
 
 namespace tubebin {
 
@@ -22,12 +22,5 @@ struct SurfaceFit {
 /// (Tukey) sum of squared distances, damped where the points do not determine a node, as along a straight stretch.
 /// Points beyond the first and last node do not count. `points` in order along the polyline converge fastest.
 SurfaceFit fit_surface(std::vector<Vec3>& nodes, std::span<const SurfacePoint> points, double radius);
-
-/// Appends nodes, about a radius apart, as far as the points show that the tube goes on from its last node without a
-/// gap, and ends the last cylinder where they end. A point shows it if it lies on the next cylinder's side and its
-/// normal stands across it; a flat end's do not.
-/// `own` are the cloud's points of the piece, `loose` those of none, in order of x.
-void grow_end(std::vector<Vec3>& nodes, const FilteredCloud& cloud, std::span<const std::uint32_t> own,
-              std::span<const SurfacePoint> loose, double radius, const Vec3& viewpoint);
 
 }  // namespace tubebin
