@@ -27,51 +27,56 @@ DropResult failed(DropFailure failure, std::string detail, DropFigures figures =
   return result;
 }
 
-/// The number of quickstep's iterations, which grows where a pile does not come to rest: what still moves or creeps
-/// under a solver that did not converge may stand under one that does.
-class SolverEffort {
+/// How steps are taken. Iterations grow where a pile does not come to rest: what still moves or creeps under a solver that
+/// did not converge may stand under one that does.
+class Pace {
  public:
-  SolverEffort(RigidWorld& world, const PhysicsOptions& options)
-      : world_(world), options_(options), next_boost_(steps_in(options.solver_patience, options)) {}
+  explicit Pace(const PhysicsOptions& options) : options_(options), next_boost_(options.solver_patience) {}
 
   /// What creeps once all is slow is mostly the solver's residual.
-  void start_proof(int step) {
-    boost();
-    next_boost_ = step + steps_in(options_.check_time, options_);
+  void start_proof(double time) {
+    boost_ *= kSolverBoost;
+    next_boost_ = time + options_.check_time;
   }
-  void boost_if_late(int step) {
-    if (step < next_boost_) return;
-    boost();
-    next_boost_ = step + steps_in(kBoostInterval, options_);
+  void boost_if_late(double time) {
+    if (!have_passed(0.0, next_boost_, time)) return;
+    boost_ *= kSolverBoost;
+    next_boost_ = time + kBoostInterval;
+  }
+
+  StepSettings settings(bool all_slow) const {
+    StepSettings settings = step_settings(options_);
+    settings.solver_iterations =
+        static_cast<int>(std::lround(std::min(boost_, kSolverBoostMax) * options_.solver_iterations));
+    if (all_slow) settings.time_step = options_.rest_time_step;
+    if (all_slow && options_.warm_start > 0.0) settings.warm_start = options_.rest_warm_start;
+    // What rolls on and on may do so on the share of the last step's forces: friction and rolling resistance lag.
+    if (boost_ >= kSolverBoostMax) settings.warm_start = 0.0;
+    return settings;
   }
 
  private:
-  void boost() {
-    boost_ = std::min(kSolverBoost * boost_, kSolverBoostMax);
-    world_.set_solver_iterations(static_cast<int>(std::lround(boost_ * options_.solver_iterations)));
-    // What rolls on and on may do so on the share of the last step's forces: friction and rolling resistance lag.
-    if (boost_ == kSolverBoostMax) world_.stop_warm_starts();
-  }
-
-  RigidWorld& world_;
   const PhysicsOptions& options_;
-  int next_boost_;
+  double next_boost_;  ///< seconds
   double boost_ = 1.0;
 };
 
 /// Steps until the pile is proven to be at rest; false at the time limit or when a tube is lost.
 bool settle(RigidWorld& world, const Bin& bin, const PhysicsOptions& options, DropFigures& figures, RestProof& proof) {
-  SolverEffort effort(world, options);
-  const int window = steps_in(options.rest_window, options);
-  const int limit = steps_in(options.time_limit, options);
-  for (int slow_steps = 0; !proof.is_complete(figures.steps);) {
-    if (figures.steps >= limit || find_outside(world, bin)) return false;
-    effort.boost_if_late(figures.steps);
-    world.step();
+  Pace pace(options);
+  double& time = figures.simulated_seconds;
+  double last_fast = 0.0;  // seconds; when a tube was last fast
+  while (!proof.is_complete(time)) {
+    if (have_passed(options.time_limit, 0.0, time) || find_outside(world, bin)) return false;
+    pace.boost_if_late(time);
+    const StepSettings settings = pace.settings(have_passed(options.rest_window, last_fast, time));
+    world.step(settings);
     ++figures.steps;
-    slow_steps = is_slow(world, options) ? slow_steps + 1 : 0;
-    if (!proof.has_started() && slow_steps >= window) effort.start_proof(figures.steps);
-    proof.observe(nodes_in_world(world.tubes()), figures.steps, slow_steps >= window);
+    time += settings.time_step;
+    if (!is_slow(world, options)) last_fast = time;
+    const bool all_slow = have_passed(options.rest_window, last_fast, time);
+    if (all_slow && !proof.has_started()) pace.start_proof(time);
+    proof.observe(nodes_in_world(world.tubes()), time, all_slow);
   }
   figures.largest_drift = proof.drift();
   return true;
@@ -102,7 +107,6 @@ DropResult drop_tubes(const std::vector<Tube>& tubes, const Bin& bin, const Phys
   DropFigures figures;
   RestProof proof(options);
   const bool settled = settle(world, bin, options, figures, proof);
-  figures.simulated_seconds = figures.steps * options.time_step;
   if (const auto tube = find_outside(world, bin))
     return failed(DropFailure::outside, fmt::format("tube {} left the bin", *tube + 1), figures);
   if (!settled)

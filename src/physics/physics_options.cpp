@@ -5,6 +5,8 @@ namespace tubebin {
 void describe(Fields& fields, PhysicsOptions& o) {
   fields.number("gravity", o.gravity, {0.01, 100.0}, "m/s^2", "downward acceleration");
   fields.number("time_step", o.time_step, {1e-5, 0.05}, "s", "of the simulation; smaller is slower and more exact");
+  fields.number("rest_time_step", o.rest_time_step, {1e-5, 0.05}, "s",
+                "the same once all tubes have been slow for rest_window, while it is proven that nothing moves");
   fields.integer(
       "solver_iterations", o.solver_iterations, {1, 10000}, "",
       "of ODE's quickstep; half as many more once all is slow, since what creeps then is mostly its residual");
@@ -13,6 +15,8 @@ void describe(Fields& fields, PhysicsOptions& o) {
                 "a pile that is not slow after this time is iterated half as much again every half second");
   fields.number("warm_start", o.warm_start, {0.0, 0.95}, "",
                 "share of a resting contact's force that the next step starts from; 0 starts from none");
+  fields.number("rest_warm_start", o.rest_warm_start, {0.0, 0.99}, "",
+                "the same once all tubes have been slow for rest_window; unused where warm_start is 0");
   fields.number("warm_start_speed", o.warm_start_speed, {0.0, 10.0}, "m/s",
                 "a contact rests where its surfaces move slower than this against each other");
   fields.number("contact_erp", o.contact_erp, {0.0, 1.0}, "",

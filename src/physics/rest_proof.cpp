@@ -11,6 +11,11 @@ constexpr double kStartInterval = 0.05;  // seconds
 
 }  // namespace
 
+bool have_passed(double seconds, double since, double now) {
+  constexpr double kRounding = 1e-9;  // seconds; times are sums of steps
+  return now - since >= seconds - kRounding;
+}
+
 std::vector<Vec3> nodes_in_world(const std::vector<PlacedTube>& tubes) {
   std::vector<Vec3> nodes;
   for (const PlacedTube& tube : tubes)
@@ -24,16 +29,16 @@ double largest_movement(const std::vector<Vec3>& before, const std::vector<Vec3>
   return std::sqrt(squared);
 }
 
-void RestProof::observe(std::vector<Vec3> nodes, int step, bool may_start) {
+void RestProof::observe(std::vector<Vec3> nodes, double time, bool may_start) {
   for (Start& start : starts_) start.drift = std::max(start.drift, largest_movement(start.nodes, nodes));
   std::erase_if(starts_, [&](const Start& start) { return start.drift > options_.drift_max; });
-  if (!may_start || (!starts_.empty() && step - last_start_step_ < steps_in(kStartInterval, options_))) return;
-  starts_.push_back({step, std::move(nodes)});
-  last_start_step_ = step;
+  if (!may_start || (!starts_.empty() && !have_passed(kStartInterval, *last_start_, time))) return;
+  starts_.push_back({time, std::move(nodes)});
+  last_start_ = time;
 }
 
-bool RestProof::is_complete(int step) const {
-  return !starts_.empty() && step - starts_.front().step >= steps_in(options_.check_time, options_);
+bool RestProof::is_complete(double time) const {
+  return !starts_.empty() && have_passed(options_.check_time, starts_.front().time, time);
 }
 
 }  // namespace tubebin

@@ -1,11 +1,15 @@
 /// The proof that a pile is at rest: nothing moves while the simulation runs on.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "physics/rigid_world.hpp"
 
 namespace tubebin {
+
+/// All in seconds of simulated time.
+bool have_passed(double seconds, double since, double now);
 
 /// Every tube's nodes, one after another.
 std::vector<Vec3> nodes_in_world(const std::vector<PlacedTube>& tubes);
@@ -19,24 +23,24 @@ class RestProof {
  public:
   explicit RestProof(const PhysicsOptions& options) : options_(options) {}
 
-  /// Where all nodes are after every step; `may_start`: all tubes have been slow for the rest window.
-  void observe(std::vector<Vec3> nodes, int step, bool may_start);
+  /// Where all nodes are at a `time` (seconds); `may_start`: all tubes have been slow for the rest window.
+  void observe(std::vector<Vec3> nodes, double time, bool may_start);
 
-  bool has_started() const { return last_start_step_ >= 0; }
-  bool is_complete(int step) const;
+  bool has_started() const { return last_start_.has_value(); }
+  bool is_complete(double time) const;
   /// Metres; in the time that proves it, once it is complete.
   double drift() const { return starts_.front().drift; }
 
  private:
   struct Start {
-    int step = 0;
+    double time = 0.0;  ///< seconds
     std::vector<Vec3> nodes;
     double drift = 0.0;  ///< metres, the largest since then
   };
 
   const PhysicsOptions& options_;
-  std::vector<Start> starts_;  ///< in order; none has drifted too far yet
-  int last_start_step_ = -1;
+  std::vector<Start> starts_;         ///< in order; none has drifted too far yet
+  std::optional<double> last_start_;  ///< seconds
 };
 
 }  // namespace tubebin

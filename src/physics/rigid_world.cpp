@@ -34,8 +34,8 @@ dMass to_ode(const MassProperties& properties) {
 
 }  // namespace
 
-int steps_in(double seconds, const PhysicsOptions& options) {
-  return static_cast<int>(std::ceil(seconds / options.time_step));
+StepSettings step_settings(const PhysicsOptions& options) {
+  return {options.time_step, options.solver_iterations, options.warm_start};
 }
 
 struct RigidWorld::Impl {
@@ -136,19 +136,20 @@ struct RigidWorld::Impl {
   }
 
   /// Finds the contacts, solves the step, and leaves in the contacts what they bore.
-  void solve() {
+  void solve(const StepSettings& settings) {
     WarmStart warm_start(std::move(contacts));
     find_contacts();
     std::vector<dJointFeedback> feedback(contacts.size());
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       StepContact& contact = contacts[i];
       add_joint(contact, feedback[i]);
-      if (options.warm_start == 0.0) continue;
+      if (settings.warm_start == 0.0) continue;
       const double reach = 0.5 * shapes[contact.second].radius;
-      contact.load = warm_start.start(contact, options.warm_start, reach, is_resting(contact));
+      contact.load = warm_start.start(contact, settings.warm_start, reach, is_resting(contact));
       apply(contact.load, contact);
     }
-    dWorldQuickStep(world, options.time_step);
+    dWorldSetQuickStepNumIterations(world, settings.solver_iterations);
+    dWorldQuickStep(world, settings.time_step);
     dJointGroupEmpty(joints);
     for (std::size_t i = 0; i < contacts.size(); ++i) add_solved(feedback[i], contacts[i]);
   }
@@ -180,7 +181,6 @@ RigidWorld::RigidWorld(const std::vector<PlacedTube>& tubes, const Bin& bin, con
   impl_->world = dWorldCreate();
   impl_->joints = dJointGroupCreate(0);
   dWorldSetGravity(impl_->world, 0, 0, -options.gravity);
-  dWorldSetQuickStepNumIterations(impl_->world, options.solver_iterations);
   dWorldSetQuickStepW(impl_->world, options.solver_over_relaxation);
   dWorldSetContactMaxCorrectingVel(impl_->world, options.correcting_speed_max);
   dWorldSetContactSurfaceLayer(impl_->world, options.contact_layer);
@@ -193,12 +193,8 @@ RigidWorld::~RigidWorld() {
   dWorldDestroy(impl_->world);
 }
 
-void RigidWorld::stop_warm_starts() { impl_->options.warm_start = 0.0; }
-
-void RigidWorld::set_solver_iterations(int iterations) { dWorldSetQuickStepNumIterations(impl_->world, iterations); }
-
-void RigidWorld::step() {
-  impl_->solve();
+void RigidWorld::step(const StepSettings& settings) {
+  impl_->solve(settings);
   for (std::size_t i = 0; i < impl_->bodies.size(); ++i) {
     impl_->limit_speed(impl_->bodies[i]);
     impl_->read_pose(i);

@@ -9,8 +9,14 @@
 
 namespace tubebin {
 
-/// Steps of options.time_step that take at least as long as `seconds`.
-int steps_in(double seconds, const PhysicsOptions& options);
+/// How one step is taken.
+struct StepSettings {
+  double time_step = 0.0;     ///< seconds
+  int solver_iterations = 0;  ///< of quickstep
+  double warm_start = 0.0;    ///< share of a resting contact's force that the step starts from
+};
+/// Those of tubes that move.
+StepSettings step_settings(const PhysicsOptions& options);
 
 class RigidWorld {
  public:
@@ -19,12 +25,7 @@ class RigidWorld {
   RigidWorld(const RigidWorld&) = delete;
   RigidWorld& operator=(const RigidWorld&) = delete;
 
-  /// In place of options.solver_iterations.
-  void set_solver_iterations(int iterations);
-  /// From now on contacts start from no forces.
-  void stop_warm_starts();
-  /// One step of options.time_step.
-  void step();
+  void step(const StepSettings& settings);
 
   const std::vector<PlacedTube>& tubes() const;
   /// World pose of one tube's frame.

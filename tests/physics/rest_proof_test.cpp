@@ -11,12 +11,16 @@ namespace {
 
 using Motion = std::function<Vec3(int step)>;
 
+constexpr double kStep = 0.005;  // seconds
+
+int steps_in(double seconds) { return static_cast<int>(std::lround(seconds / kStep)); }
+
 /// The step at which one node that moves so, and may start from step `slow` on, is proven to be at rest.
 std::optional<int> proven_at(const Motion& motion, int slow, const PhysicsOptions& options, double* drift = nullptr) {
   RestProof proof(options);
   for (int step = 1; step <= 4000; ++step) {
-    proof.observe({motion(step)}, step, step >= slow);
-    if (!proof.is_complete(step)) continue;
+    proof.observe({motion(step)}, step * kStep, step >= slow);
+    if (!proof.is_complete(step * kStep)) continue;
     if (drift) *drift = proof.drift();
     return step;
   }
@@ -25,7 +29,7 @@ std::optional<int> proven_at(const Motion& motion, int slow, const PhysicsOption
 
 /// By trying every start.
 std::optional<int> earliest(const Motion& motion, int slow, const PhysicsOptions& options) {
-  const int check = steps_in(options.check_time, options);
+  const int check = steps_in(options.check_time);
   for (int start = slow; start + check <= 4000; ++start) {
     double drift = 0.0;
     for (int step = start; step <= start + check; ++step)
@@ -37,7 +41,7 @@ std::optional<int> earliest(const Motion& motion, int slow, const PhysicsOptions
 
 TEST(RestProof, ComesAsSoonAsSomeStartAllows) {
   const PhysicsOptions options;
-  const double lag = 0.05 / options.time_step;  // between starts that are followed
+  const double lag = 0.05 / kStep;  // between starts that are followed
   const std::vector<Motion> motions = {
       [](int) { return Vec3(1, 2, 3); },
       [](int step) { return Vec3(0.01 * std::exp(-step / 150.0), 0, 0); },            // creeps to rest
@@ -55,7 +59,7 @@ TEST(RestProof, ComesAsSoonAsSomeStartAllows) {
 
 TEST(RestProof, NeverComesForWhatCreepsOnAndOn) {
   const PhysicsOptions options;
-  const double per_step = 1.01 * options.drift_max / steps_in(options.check_time, options);
+  const double per_step = 1.01 * options.drift_max / steps_in(options.check_time);
   EXPECT_FALSE(proven_at([&](int step) { return Vec3(per_step * step, 0, 0); }, 1, options));
 }
 
@@ -63,7 +67,7 @@ TEST(RestProof, ReportsTheLargestDistanceFromTheStart) {
   const PhysicsOptions options;
   double drift = 0.0;
   const auto there_and_back = [](int step) { return Vec3(0, 0, step == 70 ? 0.0004 : 0.0); };
-  EXPECT_EQ(proven_at(there_and_back, 1, options, &drift), 1 + steps_in(options.check_time, options));
+  EXPECT_EQ(proven_at(there_and_back, 1, options, &drift), 1 + steps_in(options.check_time));
   EXPECT_DOUBLE_EQ(drift, 0.0004);
 }
 

@@ -64,11 +64,12 @@ PlacedTube lying(double x, double z, bool along_x) {
 }
 
 TEST(WarmStart, ATubeThatFallsDoesNotBounce) {
-  RigidWorld world({lying(0, 0.05, true)}, Bin{}, PhysicsOptions{}, 1);
+  const PhysicsOptions options;
+  RigidWorld world({lying(0, 0.05, true)}, Bin{}, options, 1);
   double highest = 0.0;
   bool landed = false;
   for (int i = 0; i < 400; ++i) {
-    world.step();
+    world.step(step_settings(options));
     landed = landed || world.center_of_mass(0).z() < 0.0126;
     if (landed) highest = std::max(highest, world.center_of_mass(0).z());
   }
@@ -85,9 +86,9 @@ double creep_of_a_stack(double warm_start) {
   options.warm_start = warm_start;
   options.solver_iterations = 20;
   RigidWorld world(tubes, Bin{}, options, 1);
-  for (int i = 0; i < 400; ++i) world.step();
+  for (int i = 0; i < 400; ++i) world.step(step_settings(options));
   const std::vector<Vec3> before = nodes_in_world(world.tubes());
-  for (int i = 0; i < 200; ++i) world.step();
+  for (int i = 0; i < 200; ++i) world.step(step_settings(options));
   return largest_movement(before, nodes_in_world(world.tubes()));
 }
 

@@ -14,10 +14,12 @@ namespace tubebin {
 struct PhysicsOptions {
   double gravity = 9.81;                ///< m/s^2
   double time_step = 0.005;             ///< seconds
+  double rest_time_step = 0.010;        ///< seconds; once all tubes have been slow for rest_window
   int solver_iterations = 12;           ///< of ODE's quickstep; half as many more once all is slow
   double solver_over_relaxation = 1.6;  ///< SOR factor of quickstep
   double solver_patience = 4.0;         ///< seconds; what takes longer to come to rest is iterated more and more
   double warm_start = 0.8;              ///< share of a resting contact's force that the next step starts from
+  double rest_warm_start = 0.98;        ///< likewise, once all tubes have been slow for rest_window
   double warm_start_speed = 0.05;       ///< m/s; bodies that move faster against each other are not at rest
   double contact_erp = 0.2;             ///< share of an interpenetration that one step corrects
   double contact_cfm = 1e-5;            ///< softness of a contact, s/kg
@@ -37,7 +39,7 @@ struct PhysicsOptions {
   double check_time = 1.0;              ///< seconds
   double drift_max = 0.0005;            ///< metres, over check_time
   double penetration_max = 0.0005;      ///< metres, in a finished scene
-  double time_limit = 15.0;             ///< seconds of simulated time
+  double time_limit = 10.0;             ///< seconds of simulated time
 
   friend bool operator==(const PhysicsOptions&, const PhysicsOptions&) = default;
 };
