@@ -182,7 +182,7 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Stretc
                                         std::span<const SurfacePoint> loose, double radius, const Vec3& viewpoint) {
   const Segment& segment = stretch.segment;
   // Some hundred votes make a curve as well as all would: its error falls below a tenth of their scatter.
-  constexpr std::size_t kVotes = 800;
+  constexpr std::size_t kVotes = 400;
   const std::size_t stride = segment.size() / kVotes + 1;
   std::vector<Vote> votes;
   std::vector<SurfacePoint> surface;

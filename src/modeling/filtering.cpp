@@ -90,7 +90,7 @@ ViewProjection view_of(const ModelingInput& input) {
 }
 
 FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, const FilteringOptions& options,
-                     double radius, std::uint64_t seed) {
+                     std::uint64_t seed) {
   auto indices = input.bin ? crop_bin(input, options) : crop_planes(input, projection, options, seed);
   if (options.remove_outliers) indices = remove_outliers(projection, input.points, indices);
   if (indices.empty()) throw IoError("no point lies in the bin: is its place right, and is the cloud in metres?");
@@ -108,8 +108,28 @@ FilteredCloud filter(const ModelingInput& input, const ViewProjection& projectio
     cloud.source.push_back(indices[k]);
     cloud.points.push_back(points[k]);
   }
-  cloud.normals = estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, radius));
   return cloud;
+}
+
+void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double radius) {
+  cloud.normals = estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, radius));
+}
+
+FilteredCloud thinned(const FilteredCloud& cloud, double apart, const ViewProjection& projection, double radius) {
+  const double step = apart / cloud.spacing;
+  const auto stride = static_cast<std::size_t>(std::max(std::round(step * step), 1.0));
+  const auto select = [stride](const auto& all) {
+    std::remove_cvref_t<decltype(all)> selected;
+    for (std::size_t i = 0; i < all.size(); i += stride) selected.push_back(all[i]);
+    return selected;
+  };
+  FilteredCloud sample{.source = select(cloud.source),
+                       .points = select(cloud.points),
+                       .normals = select(cloud.normals),
+                       .spacing = cloud.spacing * std::sqrt(static_cast<double>(stride))};
+  if (cloud.normals.empty())
+    sample.normals = estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, radius), stride);
+  return sample;
 }
 
 }  // namespace tubebin

@@ -171,10 +171,16 @@ TUBEBIN_WIDE void plane_normals(const std::array<Moments, kPlanes>& moments,
 }  // namespace
 
 std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<const Point> points, double radius) {
-  std::vector<Point> normals(points.size(), Point::Zero());
+  return estimate_normals(projection, points, radius, 1);
+}
+
+std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<const Point> points, double radius,
+                                    std::size_t stride) {
+  std::vector<Point> normals((points.size() + stride - 1) / stride, Point::Zero());
   if (points.empty()) return normals;
   Neighborhoods neighborhoods(projection, points, radius);
   std::vector<std::uint32_t> left = neighborhoods.order();
+  std::erase_if(left, [&](std::uint32_t i) { return i % stride != 0; });
   // Where the surface is seen at a flat angle, rows of points that are neighbours in the view lie far apart in space:
   // a wider ball about the same part of the view finds them.
   for (float wider = 1.0f; wider <= 4.0f; wider *= 2.0f) {
@@ -188,9 +194,9 @@ std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<
         to_viewpoint[k] = projection.viewpoint() - points[i];
       }
       plane_normals(moments, to_viewpoint, found);
-      for (std::size_t k = 0; k < count; ++k) normals[left[first + k]] = found[k];
+      for (std::size_t k = 0; k < count; ++k) normals[left[first + k] / stride] = found[k];
     }
-    std::erase_if(left, [&](std::uint32_t i) { return !normals[i].isZero(); });
+    std::erase_if(left, [&](std::uint32_t i) { return !normals[i / stride].isZero(); });
   }
   return normals;
 }

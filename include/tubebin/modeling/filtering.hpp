@@ -22,14 +22,22 @@ void describe(Fields& fields, FilteringOptions& options);
 struct FilteredCloud {
   std::vector<std::uint32_t> source;  ///< index of each point in the input
   std::vector<Point> points;          ///< metres, world frame
-  std::vector<Point> normals;         ///< unit, toward the viewpoint; zero where a point has too few neighbours
+  std::vector<Point> normals;         ///< unit, toward the viewpoint; zero where a point has too few neighbours; none
+                                      ///< until they are estimated
   double spacing = 0.0;               ///< metres between neighbours: the root of the area that a point stands for
 };
 
-/// The filtered cloud: points of the bin go (find_bin_planes without a known bin), of the others a random part stays,
-/// and each gets its normal. `radius`: metres, 0 where it is not known. Throws IoError where no point is left.
+/// The filtered cloud, yet without normals: points of the bin go (find_bin_planes without a known bin), and of the others
+/// a random part stays. Throws IoError where no point is left.
 FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, const FilteringOptions& options,
-                     double radius, std::uint64_t seed);
+                     std::uint64_t seed);
+
+/// Estimates the cloud's normals. `radius`: of the tubes, metres; 0 where it is not known.
+void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double radius);
+
+/// Every so many of the cloud's points, that they lie about `apart` metres from each other, or all where they already do,
+/// with normals: the cloud's, or, where it has none, from neighbours among all of its points. `radius`: of the tubes.
+FilteredCloud thinned(const FilteredCloud& cloud, double apart, const ViewProjection& projection, double radius);
 
 /// Radius of the neighbourhoods of normals, metres: large enough for some 25 points, which average the noise, and small
 /// enough that the surface is nearly flat.

@@ -11,6 +11,9 @@ namespace tubebin {
 /// Unit normals toward the viewpoint by least-squares planes through the neighbours within `radius` metres; zero where
 /// a point has fewer than five neighbours or they do not span a plane.
 std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<const Point> points, double radius);
+/// The same of every stride-th point alone, from the neighbours among all: those of points 0, stride, 2 stride, ...
+std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<const Point> points, double radius,
+                                    std::size_t stride);
 
 /// Points within `radius` metres of each point, itself included.
 std::vector<int> count_neighbors(const ViewProjection& projection, std::span<const Point> points, double radius);
