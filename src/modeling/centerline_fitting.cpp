@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "modeling/boxed_curve.hpp"
+#include "tubebin/core/random.hpp"
 #include "tubebin/modeling/end_growth.hpp"
 #include "tubebin/modeling/surface_fitting.hpp"
 
@@ -176,17 +177,40 @@ void drop_joints_at_ends(std::vector<Vec3>& nodes, double radius) {
   while (nodes.size() > 2 && (nodes[nodes.size() - 2] - nodes.back()).norm() < radius) nodes.erase(nodes.end() - 2);
 }
 
+/// Joints nearer to each other than `closest` become one in their middle: no tube bends so narrowly that it needs both, and
+/// a cylinder with hardly a point on it would be free to lean anywhere.
+void merge_close_joints(std::vector<Vec3>& nodes, double closest) {
+  for (std::size_t k = 2; k + 1 < nodes.size();) {
+    if ((nodes[k] - nodes[k - 1]).norm() >= closest) {
+      ++k;
+      continue;
+    }
+    nodes[k - 1] = 0.5 * (nodes[k - 1] + nodes[k]);
+    nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+}
+
+/// Of so many of a stretch's points, one votes. Where smooth() takes means of r / 3 of a fully visible tube, eight votes, each
+/// off by r / 6, make them good to r / 17; a short stretch needs some hundred votes in all.
+std::size_t vote_stride(std::size_t points, double radius, double spacing) {
+  constexpr double kVotesOfMean = 8.0, kVotesOfStretch = 300.0;
+  const double points_of_mean = 2.0 * radius * radius / 3.0 / (spacing * spacing);
+  const double stride =
+      std::min(std::round(points_of_mean / kVotesOfMean), std::floor(static_cast<double>(points) / kVotesOfStretch));
+  return static_cast<std::size_t>(std::max(stride, 1.0));
+}
+
 }  // namespace
 
 std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Stretch& stretch,
                                         std::span<const SurfacePoint> loose, double radius, const Vec3& viewpoint) {
   const Segment& segment = stretch.segment;
-  // Some hundred votes make a curve as well as all would: its error falls below a tenth of their scatter.
-  constexpr std::size_t kVotes = 400;
-  const std::size_t stride = segment.size() / kVotes + 1;
+  const std::size_t stride = vote_stride(segment.size(), radius, cloud.spacing);
   std::vector<Vote> votes;
   std::vector<SurfacePoint> surface;
-  for (std::size_t k = 0; k < segment.size(); k += stride) {
+  for (std::size_t first = 0; first < segment.size(); first += stride) {
+    // One of each few at random: a fixed stride picks stripes out of the rows that points stand in.
+    const std::size_t k = std::min(first + derive_seed({first}) % stride, segment.size() - 1);
     const Vec3 p = cloud.points[segment[k]].cast<double>(), n = cloud.normals[segment[k]].cast<double>();
     surface.push_back({p, n});
     votes.push_back({.normal = n, .center = p - radius * n});
@@ -215,6 +239,7 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Stretc
     std::vector<Vec3> nodes = {piece.nodes.front()};
     simplify(piece.nodes, 0, piece.nodes.size() - 1, radius / 50.0, nodes);
     drop_joints_at_ends(nodes, radius);
+    merge_close_joints(nodes, radius / 2.0);
     if (round > 0 && nodes.size() == piece.nodes.size()) break;
     piece.nodes = std::move(nodes);
     fit_surface(piece.nodes, surface, radius);

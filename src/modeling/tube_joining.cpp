@@ -20,8 +20,8 @@ constexpr double kHiddenEndCost = 1.0;
 constexpr double kLengthCostLimit = 10.0;
 /// A fragment that no tube explains is as likely chance as not: e^-3.
 constexpr double kFragmentCostLimit = 3.0;
-/// A join is ruled out where the scan is e^9 times likelier without it.
-constexpr double kJoinCostLimit = 9.0;
+/// A join is ruled out where the scan is e^7 times likelier without it.
+constexpr double kJoinCostLimit = 7.0;
 /// And clear where it is e^2 times likelier with it.
 constexpr double kClearJoinCost = -2.0;
 constexpr std::size_t kNodeLimit = 1000;

@@ -11,6 +11,7 @@
 #include "modeling/built_scene.hpp"
 #include "tubebin/core/random.hpp"
 #include "tubebin/modeling/end_growth.hpp"
+#include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/normals.hpp"
 #include "tubebin/modeling/surface_fitting.hpp"
 #include "tubebin/modeling/tube_model.hpp"
@@ -97,6 +98,29 @@ TEST(Normals, AreZeroWhereNeighborsSpanNoPlane) {
   for (int i = 0; i < 20; ++i) points.emplace_back(0.1f + 0.0005f * static_cast<float>(i), 0.1f, 0.0f);
   for (const Point& normal : estimate_normals(view_from_above(), points, 0.004)) EXPECT_TRUE(normal.isZero());
   EXPECT_TRUE(estimate_normals(view_from_above(), {}, 0.004).empty());
+}
+
+TEST(Normals, OfAPartOfThePointsAreThoseThatAllOfThemGive) {
+  const HalfTube tube(3000);
+  const std::vector<Point> all = estimate_normals(view_from_above(), tube.points, 0.004);
+  const std::vector<Point> part = estimate_normals(view_from_above(), tube.points, 0.004, 3);
+  ASSERT_EQ(part.size(), (all.size() + 2) / 3);
+  for (std::size_t i = 0; i < part.size(); ++i) EXPECT_LT((part[i] - all[3 * i]).norm(), 1e-5f);
+}
+
+TEST(Thinned, LeavesPointsAboutAsFarApartAsAsked) {
+  const HalfTube tube(3000);
+  const FilteredCloud cloud{.source = std::vector<std::uint32_t>(tube.points.size(), 7),
+                            .points = tube.points,
+                            .normals = {},
+                            .spacing = 0.001};
+  const FilteredCloud same = thinned(cloud, 0.001, view_from_above(), kRadius);
+  EXPECT_EQ(same.points, cloud.points);
+  const FilteredCloud sample = thinned(cloud, 0.002, view_from_above(), kRadius);
+  EXPECT_EQ(sample.points.size(), (cloud.points.size() + 3) / 4);
+  EXPECT_DOUBLE_EQ(sample.spacing, 0.002);
+  EXPECT_EQ(sample.source.size(), sample.points.size());
+  EXPECT_EQ(sample.normals.size(), sample.points.size());
 }
 
 TEST(Normals, CountTheNeighborsOfEachPoint) {
