@@ -145,6 +145,26 @@ std::optional<Touch> touch_box_with_ball(const Box& box, const Vec3& center, dou
   return Touch{center, normal, out + radius};
 }
 
+/// The point of a flat end that lies deepest in a box whose edge may cut into it between the rim points below.
+void add_deepest_end_touch(const Box& box, const Piece& piece, const Vec3& center, double depth_min,
+                           std::vector<Touch>& out) {
+  const Vec3 extent = piece.radius * (1.0 - piece.direction.array().square()).max(0.0).sqrt();
+  const auto beyond = (center - extent).array() < box.min().array() || (center + extent).array() > box.max().array();
+  if (beyond.count() < 2) return;          // before one face: the deepest is on the rim, toward the face
+  constexpr int kAround = 64, kRings = 8;  // the rim's deepest is missed by 0.1 % of the radius
+  const Vec3 u = piece.direction.unitOrthogonal(), v = piece.direction.cross(u);
+  double deepest = depth_min;
+  std::optional<Touch> touch;
+  for (int i = 0; i < kAround * kRings; ++i) {
+    const double angle = 2.0 * std::numbers::pi * (i % kAround) / kAround;
+    const double reach = piece.radius * (1 + i / kAround) / kRings;
+    const Vec3 point = center + reach * (std::cos(angle) * u + std::sin(angle) * v);
+    const auto here = touch_box_with_ball(box, point, 0.0, deepest);
+    if (here && here->depth > deepest) touch = here, deepest = here->depth;
+  }
+  if (touch) out.push_back(*touch);
+}
+
 /// A flat end's rim against a box: the rim point that lies deepest and seven more around, which keep a standing
 /// tube upright.
 void add_rim_touches(const Box& box, const Piece& piece, bool at_a, double depth_min, std::vector<Touch>& out) {
@@ -162,6 +182,7 @@ void add_rim_touches(const Box& box, const Piece& piece, bool at_a, double depth
     const Vec3 rim = center + piece.radius * (along_u * u + along_v * v);
     if (const auto touch = touch_box_with_ball(box, rim, 0.0, depth_min)) out.push_back(*touch);
   }
+  add_deepest_end_touch(box, piece, center, depth_min, out);
 }
 
 /// Whether all of a segment lies before one and the same face of a box.

@@ -165,6 +165,30 @@ TEST(Collision, GapsToTheBinMatchTheSampledSurface) {
   EXPECT_EQ(compared, 40);
 }
 
+TEST(Collision, AWallsEdgeThatCutsIntoARimTouchesIt) {
+  // An end that hangs over the wall's top, tilted by all angles: the edge meets the rim anywhere, at last the side.
+  const Bin bin{.length = 0.55, .width = 0.37, .height = 0.20};
+  for (double tilt = -0.5; tilt <= 0.5; tilt += 0.05) {
+    const Vec3 end(0.228, -0.1768, 0.1991);
+    const Vec3 direction = Vec3(0.917, -0.368, std::sin(tilt)).normalized();
+    const PlacedTube tube{
+        {.radius = 0.0125, .mass = 0.1, .nodes = {Vec3::Zero(), 0.1 * direction}, .cylinders = {{0, 1, 0}}},
+        make_pose(Quat::Identity(), end - 0.1 * direction)};
+    double sampled = 0.0;
+    for (const Vec3& p : surface_points(tube, 0.0002))
+      for (const Box& box : bin_boxes(bin))
+        if (box.contains(p))
+          sampled = std::max(sampled, std::min((p - box.min()).minCoeff(), (box.max() - p).minCoeff()));
+    ASSERT_GT(sampled, 0.001);
+    std::vector<Touch> touches;
+    collide(collision_boxes(bin), collision_tube(tube), 0.0, touches);
+    double deepest = 0.0;
+    for (const Touch& touch : touches) deepest = std::max(deepest, touch.depth);
+    // A side's touch counts its depth from the edge, not from a face, which makes it less.
+    EXPECT_GT(deepest, 0.6 * sampled) << "tilt " << tilt;
+  }
+}
+
 TEST(Collision, ATubeOnTheWallsRimIsHeldByItsEdge) {
   const Bin bin;
   const double top = bin.height + 0.0125 - 0.0001;
