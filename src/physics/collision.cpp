@@ -156,8 +156,9 @@ void add_deepest_end_touch(const Box& box, const Piece& piece, const Vec3& cente
   double deepest = depth_min;
   std::optional<Touch> touch;
   for (int i = 0; i < kAround * kRings; ++i) {
+    const int ring = 1 + i / kAround;
     const double angle = 2.0 * std::numbers::pi * (i % kAround) / kAround;
-    const double reach = piece.radius * (1 + i / kAround) / kRings;
+    const double reach = piece.radius * ring / kRings;
     const Vec3 point = center + reach * (std::cos(angle) * u + std::sin(angle) * v);
     const auto here = touch_box_with_ball(box, point, 0.0, deepest);
     if (here && here->depth > deepest) touch = here, deepest = here->depth;
