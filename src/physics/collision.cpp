@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <optional>
 
 namespace tubebin {
@@ -47,18 +49,41 @@ std::optional<Touch> touch_flat_with_round(const Piece& piece, double end, const
   return Touch{nearest - normal * (0.5 * depth), normal, depth};
 }
 
+/// How far a piece's solid reaches along a unit direction, from its axis' start.
+double reach_along(const Piece& piece, const Vec3& direction) {
+  const double cosine = piece.direction.dot(direction);
+  return std::max(0.0, cosine * piece.length) + piece.radius * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+}
+
+/// Two flat ends that overlap by more than their rims' rounding: out the shortest way, axes apart or along either.
+Touch touch_overlapping_ends(const Piece& first, const Piece& second, const SegmentPair& closest,
+                             const Vec3& position) {
+  const Vec3 between_axes = second.axis.at(closest.t) - first.axis.at(closest.s);
+  const Vec3 ways[] = {between_axes.stableNormalized(), outward_end_direction(first, closest.s),
+                       -outward_end_direction(second, closest.t)};
+  Touch touch{position, ways[1], std::numeric_limits<double>::max()};
+  for (const Vec3& way : ways) {
+    if (way.isZero()) continue;  // axes that cross
+    const double depth = reach_along(first, way) + reach_along(second, -way) + (first.axis.a - second.axis.a).dot(way);
+    if (depth < touch.depth) touch.normal = way, touch.depth = depth;
+  }
+  return touch;
+}
+
 /// Two flat ends, both with rounded rims.
-std::optional<Touch> touch_flat_with_flat(const Piece& first, double end, const Piece& second, double depth_min) {
+std::optional<Touch> touch_flat_with_flat(const Piece& first, const Piece& second, const SegmentPair& closest,
+                                          double depth_min) {
   const SolidCylinder core_first = first.solid(kRimRounding);
   const SolidCylinder core_second = second.solid(kRimRounding);
   const auto [p, q] = closest_of_convex([&](const Vec3& x) { return core_first.project(x); },
-                                        [&](const Vec3& x) { return core_second.project(x); }, second.axis.at(0.5));
+                                        [&](const Vec3& x) { return core_second.project(x); },
+                                        second.axis.at(closest.t));
   const Vec3 offset = q - p;
   const double distance = offset.norm();
   const double depth = 2.0 * kRimRounding - distance;
   if (depth < depth_min) return std::nullopt;
-  const Vec3 normal = distance > 1e-9 ? Vec3(offset / distance) : outward_end_direction(first, end);
-  return Touch{0.5 * (p + q), normal, depth};
+  if (distance < 0.1 * kRimRounding) return touch_overlapping_ends(first, second, closest, 0.5 * (p + q));
+  return Touch{0.5 * (p + q), offset / distance, depth};
 }
 
 /// The touch at the closest points of two pieces' axes.
@@ -68,7 +93,7 @@ std::optional<Touch> touch_pieces(const Piece& first, const Piece& second, const
       first.radius + second.radius - (first.axis.at(closest.s) - second.axis.at(closest.t)).norm();
   const bool first_flat = is_flat_end(first, closest.s, depth_of_sides);
   const bool second_flat = is_flat_end(second, closest.t, depth_of_sides);
-  if (first_flat && second_flat) return touch_flat_with_flat(first, closest.s, second, depth_min);
+  if (first_flat && second_flat) return touch_flat_with_flat(first, second, closest, depth_min);
   if (first_flat) return touch_flat_with_round(first, closest.s, second, depth_min);
   if (second_flat) {
     auto touch = touch_flat_with_round(second, closest.t, first, depth_min);

@@ -165,6 +165,50 @@ TEST(Collision, GapsToTheBinMatchTheSampledSurface) {
   EXPECT_EQ(compared, 40);
 }
 
+/// How far two straight tubes overlap, negative for a gap: the least over all directions, found by search. By duality
+/// the least way that parts two convex solids, or what keeps them apart, with their support functions in closed form.
+double overlap_of_straight(const PlacedTube& first, const PlacedTube& second) {
+  const auto reach = [](const PlacedTube& tube, const Vec3& direction) {
+    const Vec3 a = tube.node_in_world(0), b = tube.node_in_world(1);
+    const double along = (b - a).normalized().dot(direction);
+    return std::max(a.dot(direction), b.dot(direction)) +
+           tube.tube.radius * std::sqrt(std::max(0.0, 1.0 - along * along));
+  };
+  const auto overlap = [&](const Vec3& n) { return reach(first, n) + reach(second, -n); };
+  Random random(1);
+  Vec3 best = Vec3::UnitX();
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 n = random.rotation() * Vec3::UnitX();
+    if (overlap(n) < overlap(best)) best = n;
+  }
+  for (double step = 0.05; step > 1e-6; step *= 0.97) {
+    const Vec3 n = (best + step * (random.rotation() * Vec3::UnitX())).normalized();
+    if (overlap(n) < overlap(best)) best = n;
+  }
+  return overlap(best);
+}
+
+TEST(Collision, EndsThatLieNearlySideBySideTouchAsDeeplyAsTheyOverlap) {
+  Random random(7);
+  int overlapping = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const Vec3 tilt(0.0, random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4));
+    const Vec3 end(random.uniform(-0.01, 0.01), random.uniform(0.01, 0.025), random.uniform(-0.01, 0.01));
+    const PlacedTube a = straight({0, 0, 0}, {0.3, 0, 0});
+    const PlacedTube b = straight(end, end + 0.2 * (Vec3::UnitX() + tilt).normalized());
+    const double overlap = overlap_of_straight(a, b);
+    if (overlap < 0.0 || overlap > 0.0125) continue;
+    ++overlapping;
+    const auto touches = touches_of(a, b);
+    double deepest = 0.0;
+    for (const Touch& touch : touches) deepest = std::max(deepest, touch.depth);
+    // Two rounded rims hide up to twice 0.41 mm.
+    EXPECT_GT(deepest, overlap - 0.00083) << "trial " << trial << ", " << overlap;
+    EXPECT_LT(deepest, 1.2 * overlap) << "trial " << trial << ", " << overlap;
+  }
+  EXPECT_GT(overlapping, 100);
+}
+
 TEST(Collision, AWallsEdgeThatCutsIntoARimTouchesIt) {
   // An end that hangs over the wall's top, tilted by all angles: the edge meets the rim anywhere, at last the side.
   const Bin bin{.length = 0.55, .width = 0.37, .height = 0.20};
