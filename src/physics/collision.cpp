@@ -75,9 +75,9 @@ std::optional<Touch> touch_flat_with_flat(const Piece& first, const Piece& secon
                                           double depth_min) {
   const SolidCylinder core_first = first.solid(kRimRounding);
   const SolidCylinder core_second = second.solid(kRimRounding);
-  const auto [p, q] = closest_of_convex([&](const Vec3& x) { return core_first.project(x); },
-                                        [&](const Vec3& x) { return core_second.project(x); },
-                                        second.axis.at(closest.t));
+  const auto [p, q] =
+      closest_of_convex([&](const Vec3& x) { return core_first.project(x); },
+                        [&](const Vec3& x) { return core_second.project(x); }, second.axis.at(closest.t));
   const Vec3 offset = q - p;
   const double distance = offset.norm();
   const double depth = 2.0 * kRimRounding - distance;
