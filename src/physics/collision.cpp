@@ -170,25 +170,40 @@ std::optional<Touch> touch_box_with_ball(const Box& box, const Vec3& center, dou
   return Touch{center, normal, out + radius};
 }
 
+/// Places all over a disc of radius 1; those on its rim come last.
+std::vector<Eigen::Vector2d> disc_places() {
+  constexpr int kAround = 64, kRings = 8;
+  std::vector<Eigen::Vector2d> places;
+  for (int ring = 1; ring <= kRings; ++ring)
+    for (int i = 0; i < kAround; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kAround;
+      places.push_back(Eigen::Vector2d(std::cos(angle), std::sin(angle)) * ring / kRings);
+    }
+  return places;
+}
+
+/// How deep a point lies in a box; negative beside it.
+double depth_in(const Box& box, const Vec3& point) {
+  return (point - box.min()).cwiseMin(box.max() - point).minCoeff();
+}
+
 /// The point of a flat end that lies deepest in a box whose edge may cut into it between the rim points below.
-void add_deepest_end_touch(const Box& box, const Piece& piece, const Vec3& center, double depth_min,
-                           std::vector<Touch>& out) {
+void add_deepest_end_touch(const Box& box, const Piece& piece, const Vec3& center, std::vector<Touch>& out) {
   const Vec3 extent = piece.radius * (1.0 - piece.direction.array().square()).max(0.0).sqrt();
-  const auto beyond = (center - extent).array() < box.min().array() || (center + extent).array() > box.max().array();
-  if (beyond.count() < 2) return;          // before one face: the deepest is on the rim, toward the face
-  constexpr int kAround = 64, kRings = 8;  // the rim's deepest is missed by 0.1 % of the radius
-  const Vec3 u = piece.direction.unitOrthogonal(), v = piece.direction.cross(u);
-  double deepest = depth_min;
-  std::optional<Touch> touch;
-  for (int i = 0; i < kAround * kRings; ++i) {
-    const int ring = 1 + i / kAround;
-    const double angle = 2.0 * std::numbers::pi * (i % kAround) / kAround;
-    const double reach = piece.radius * ring / kRings;
-    const Vec3 point = center + reach * (std::cos(angle) * u + std::sin(angle) * v);
-    const auto here = touch_box_with_ball(box, point, 0.0, deepest);
-    if (here && here->depth > deepest) touch = here, deepest = here->depth;
+  const Box end(center - extent, center + extent);
+  if (!box.intersects(end)) return;
+  const auto sides = ((end.min().array() < box.min().array()) || (end.max().array() > box.max().array())).count();
+  if (sides < 2) return;  // before one face: the deepest is on the rim, toward the face
+  static const std::vector<Eigen::Vector2d> places = disc_places();  // misses the rim's deepest by 0.1 % of the radius
+  const Vec3 u = piece.radius * piece.direction.unitOrthogonal(), v = piece.direction.cross(u);
+  double deepest = 0.0;
+  Vec3 at;
+  for (const Eigen::Vector2d& place : places) {
+    const Vec3 point = center + place.x() * u + place.y() * v;
+    const double depth = depth_in(box, point);
+    if (depth > deepest) at = point, deepest = depth;
   }
-  if (touch) out.push_back(*touch);
+  if (deepest > 0.0) out.push_back(*touch_box_with_ball(box, at, 0.0, 0.0));
 }
 
 /// A flat end's rim against a box: the rim point that lies deepest and seven more around, which keep a standing
@@ -208,7 +223,7 @@ void add_rim_touches(const Box& box, const Piece& piece, bool at_a, double depth
     const Vec3 rim = center + piece.radius * (along_u * u + along_v * v);
     if (const auto touch = touch_box_with_ball(box, rim, 0.0, depth_min)) out.push_back(*touch);
   }
-  add_deepest_end_touch(box, piece, center, depth_min, out);
+  add_deepest_end_touch(box, piece, center, out);
 }
 
 /// Whether all of a segment lies before one and the same face of a box.
@@ -269,10 +284,12 @@ void collide(const CollisionTube& first, const CollisionTube& second, double dep
 void collide(const CollisionTube& first, const CollisionTube& second, const std::vector<PiecePair>& pairs,
              double depth_min, std::vector<Touch>& out) {
   const std::size_t begin = out.size();
-  const double touching = first.radius + second.radius - std::min(depth_min, 0.0);
+  const double gap = -std::min(depth_min, 0.0);
+  const double touching = first.radius + second.radius + gap;
   for (const PiecePair& pair : pairs) {
     const Piece& p = first.pieces[pair.first];
     const Piece& q = second.pieces[pair.second];
+    if (!p.bounds.intersects(inflated(q.bounds, gap))) continue;
     const SegmentPair closest = closest_on_segments(p.axis, q.axis);
     if ((p.axis.at(closest.s) - q.axis.at(closest.t)).squaredNorm() > touching * touching) continue;
     if (const auto touch = touch_pieces(p, q, closest, depth_min)) out.push_back(*touch);

@@ -36,6 +36,7 @@ struct Ball {
 
 /// A tube posed in the world.
 struct CollisionTube {
+  std::vector<Vec3> nodes;
   std::vector<Piece> pieces;
   std::vector<Ball> joints;  ///< at nodes shared by two cylinders or more, and lone spheres
   double radius = 0.0;       ///< of the thickest part

@@ -14,6 +14,8 @@ namespace {
 void begin_joints(const Tube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
   const std::vector<double> radii = tube.node_radii();
   out.radius = tube.radius_max();
+  out.nodes.resize(tube.nodes.size());
+  out.pieces.resize(tube.cylinders.size());
   for (std::size_t i = 0; i < tube.nodes.size(); ++i)
     if (node_degrees[i] != 1) out.joints.push_back({tube.nodes[i], radii[i]});
 }
@@ -22,27 +24,28 @@ void begin_joints(const Tube& tube, const std::vector<int>& node_degrees, Collis
 
 void update_collision_tube(const PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
   if (out.radius == 0.0) begin_joints(tube.tube, node_degrees, out);
-  out.pieces.resize(tube.tube.cylinders.size());
   out.bounds.setEmpty();
   auto joint = out.joints.begin();
-  for (std::size_t i = 0; i < tube.tube.nodes.size(); ++i) {
+  for (std::size_t i = 0; i < out.nodes.size(); ++i) {
+    out.nodes[i] = tube.world_from_tube * tube.tube.nodes[i];
     if (node_degrees[i] == 1) continue;
     const Vec3 margin = Vec3::Constant(joint->radius);
-    joint->center = tube.node_in_world(static_cast<int>(i));
+    joint->center = out.nodes[i];
     out.bounds.extend(Box(joint->center - margin, joint->center + margin));
     ++joint;
   }
   for (std::size_t i = 0; i < out.pieces.size(); ++i) {
     const Cylinder& cylinder = tube.tube.cylinders[i];
     Piece& piece = out.pieces[i];
-    piece.axis = {tube.node_in_world(cylinder.node_a), tube.node_in_world(cylinder.node_b)};
+    const auto a = static_cast<std::size_t>(cylinder.node_a), b = static_cast<std::size_t>(cylinder.node_b);
+    piece.axis = {out.nodes[a], out.nodes[b]};
     piece.direction = piece.axis.b - piece.axis.a;
     piece.length = piece.direction.norm();
     piece.direction /= piece.length;
     piece.radius = tube.tube.radius_of(cylinder);
     const Vec3 margin = Vec3::Constant(piece.radius);
-    piece.flat_a = node_degrees[static_cast<std::size_t>(cylinder.node_a)] == 1;
-    piece.flat_b = node_degrees[static_cast<std::size_t>(cylinder.node_b)] == 1;
+    piece.flat_a = node_degrees[a] == 1;
+    piece.flat_b = node_degrees[b] == 1;
     piece.bounds = Box(piece.axis.a.cwiseMin(piece.axis.b) - margin, piece.axis.a.cwiseMax(piece.axis.b) + margin);
     out.bounds.extend(piece.bounds);
   }

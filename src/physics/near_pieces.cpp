@@ -12,32 +12,22 @@ constexpr double kMovementMax = 0.002;
 /// own listing on one side now and on the other side then.
 constexpr double kReach = 3.0 * kMovementMax;
 
-std::vector<Segment> axes_of(const CollisionTube& tube) {
-  std::vector<Segment> axes;
-  for (const Piece& piece : tube.pieces) axes.push_back(piece.axis);
-  return axes;
+bool have_moved(const std::vector<Vec3>& nodes, const std::vector<Vec3>& when_listed) {
+  return !std::equal(nodes.begin(), nodes.end(), when_listed.begin(), [](const Vec3& now, const Vec3& then) {
+    return (now - then).squaredNorm() <= kMovementMax * kMovementMax;
+  });
 }
 
 }  // namespace
 
-bool NearPieces::has_moved(const CollisionTube& tube, const std::vector<Segment>& axes_when_listed) const {
-  const auto is_far = [](const Vec3& now, const Vec3& then) {
-    return (now - then).squaredNorm() > kMovementMax * kMovementMax;
-  };
-  for (std::size_t i = 0; i < tube.pieces.size(); ++i)
-    if (is_far(tube.pieces[i].axis.a, axes_when_listed[i].a) || is_far(tube.pieces[i].axis.b, axes_when_listed[i].b))
-      return true;
-  return false;
-}
-
 void NearPieces::follow(const std::vector<CollisionTube>& tubes) {
-  const bool is_new = axes_when_listed_.empty();
-  axes_when_listed_.resize(tubes.size());
+  const bool is_new = nodes_when_listed_.empty();
+  nodes_when_listed_.resize(tubes.size());
   pairs_.resize(tubes.size() * (tubes.size() - 1) / 2);
   std::vector<bool> moved(tubes.size());
   for (std::size_t i = 0; i < tubes.size(); ++i) {
-    moved[i] = is_new || has_moved(tubes[i], axes_when_listed_[i]);
-    if (moved[i]) axes_when_listed_[i] = axes_of(tubes[i]);
+    moved[i] = is_new || have_moved(tubes[i].nodes, nodes_when_listed_[i]);
+    if (moved[i]) nodes_when_listed_[i] = tubes[i].nodes;
   }
   for (std::size_t second = 1; second < tubes.size(); ++second)
     for (std::size_t first = 0; first < second; ++first) {

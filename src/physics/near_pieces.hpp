@@ -19,10 +19,8 @@ class NearPieces {
   }
 
  private:
-  bool has_moved(const CollisionTube& tube, const std::vector<Segment>& axes_when_listed) const;
-
   std::vector<std::vector<PiecePair>> pairs_;
-  std::vector<std::vector<Segment>> axes_when_listed_;  ///< of each tube
+  std::vector<std::vector<Vec3>> nodes_when_listed_;  ///< of each tube
 };
 
 }  // namespace tubebin

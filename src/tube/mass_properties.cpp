@@ -20,62 +20,74 @@ struct Moments {
   Vec3 first = Vec3::Zero();
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
 
-  /// Adds the points base + t * axis for t in [from, to], each with cross-section `area`.
-  void add_line(const Vec3& base, const Vec3& axis, double from, double to, double area) {
+  void add(const Moments& other, double sign = 1.0) {
+    volume += sign * other.volume;
+    first += sign * other.first;
+    second += sign * other.second;
+  }
+
+  /// Adds the points (x, y, z) with z in [from, to], each with cross-section `area`.
+  void add_line(double x, double y, double from, double to, double area) {
     const double m0 = area * (to - from);
     const double m1 = area * (to * to - from * from) / 2.0;
     const double m2 = area * (to * to * to - from * from * from) / 3.0;
     volume += m0;
-    first += m0 * base + m1 * axis;
-    const Eigen::Matrix3d mixed = base * axis.transpose();
-    second += m0 * base * base.transpose() + m1 * (mixed + mixed.transpose()) + m2 * axis * axis.transpose();
+    first += Vec3(m0 * x, m0 * y, m1);
+    const double xy = m0 * x * y, xz = m1 * x, yz = m1 * y;
+    second += Eigen::Matrix3d{{m0 * x * x, xy, xz}, {xy, m0 * y * y, yz}, {xz, yz, m2}};
   }
 
-  void subtract(const Moments& other) {
-    volume -= other.volume;
-    first -= other.first;
-    second -= other.second;
+  /// The solid's moments once it is rotated, then moved.
+  Moments moved(const Eigen::Matrix3d& rotation, const Vec3& offset) const {
+    const Vec3 turned = rotation * first;
+    const Eigen::Matrix3d mixed = offset * turned.transpose();
+    return {
+        volume, turned + volume * offset,
+        rotation * second * rotation.transpose() + mixed + mixed.transpose() + volume * offset * offset.transpose()};
   }
 };
 
-/// Where the cylinder's share of a line begins: `offset` is the line's place in the cross-section, `axis` points
-/// into the cylinder. Points nearer (by angle) to a neighbour belong to it; outside, the sphere ends the joint.
-double line_start(const Vec3& offset, const Vec3& axis, const std::vector<Vec3>& neighbours, double radius) {
+/// Where the cylinder's share of the line at (x, y) begins, in a frame whose z axis points from the joint into the
+/// cylinder. Points nearer (by angle) to a neighbour belong to it; outside, the sphere ends the joint.
+double line_start(double x, double y, const std::vector<Vec3>& neighbours, double radius) {
   if (neighbours.empty()) return 0.0;
-  double start = -std::sqrt(std::max(0.0, radius * radius - offset.squaredNorm()));
+  double start = -std::sqrt(std::max(0.0, radius * radius - x * x - y * y));
   for (const Vec3& direction : neighbours) {
-    const double spread = 1.0 - direction.dot(axis);
+    const double spread = 1.0 - direction.z();
     // A neighbour that folds straight back shares the whole cylinder: leave the overlap to this end's flat cut.
-    start = spread < 1e-9 ? std::max(start, 0.0) : std::max(start, direction.dot(offset) / spread);
+    start = std::max(start, spread < 1e-9 ? 0.0 : (direction.x() * x + direction.y() * y) / spread);
   }
   return start;
 }
 
 /// `wall`: metres, taken off the radius; as in all that follows.
-void add_cylinder(const Tube& tube, std::size_t index, double wall, Moments& moments) {
+Moments cylinder_moments(const Tube& tube, std::size_t index, double wall) {
   const Cylinder& cylinder = tube.cylinders[index];
   const double radius = tube.radius_of(cylinder) - wall;
   const Vec3& a = tube.nodes[static_cast<std::size_t>(cylinder.node_a)];
   const double length = tube.length(cylinder);
   const Vec3 axis = (tube.nodes[static_cast<std::size_t>(cylinder.node_b)] - a) / length;
   const Vec3 u = axis.unitOrthogonal();
-  const Vec3 v = axis.cross(u);
-  const std::vector<Vec3> at_a = tube.directions_from(cylinder.node_a, index);
-  const std::vector<Vec3> at_b = tube.directions_from(cylinder.node_b, index);
-  for (int ring = 0; ring < kRings; ++ring) {
-    // Rings of equal area; each ring's root-mean-square radius keeps the disc's second moment exact.
-    const double inner = radius * std::sqrt(static_cast<double>(ring) / kRings);
-    const double outer = radius * std::sqrt(static_cast<double>(ring + 1) / kRings);
-    const double rho = std::sqrt((inner * inner + outer * outer) / 2.0);
-    const double area = std::numbers::pi * radius * radius / (kRings * kSectors);
-    for (int sector = 0; sector < kSectors; ++sector) {
-      const double angle = 2.0 * std::numbers::pi * (sector + 0.5) / kSectors;
-      const Vec3 offset = rho * (std::cos(angle) * u + std::sin(angle) * v);
-      const double from = line_start(offset, axis, at_a, radius);
-      const double to = length - line_start(offset, -axis, at_b, radius);
-      if (to > from) moments.add_line(a + offset, axis, from, to, area);
+  Eigen::Matrix3d frame;
+  frame << u, axis.cross(u), axis;
+  std::vector<Vec3> at_a = tube.directions_from(cylinder.node_a, index);
+  std::vector<Vec3> at_b = tube.directions_from(cylinder.node_b, index);
+  for (Vec3& direction : at_a) direction = frame.transpose() * direction;
+  for (Vec3& direction : at_b) direction = (frame.transpose() * direction).cwiseProduct(Vec3(1.0, 1.0, -1.0));
+  Moments moments;
+  const double area = std::numbers::pi * radius * radius / (kRings * kSectors);
+  for (int sector = 0; sector < kSectors; ++sector) {
+    const double angle = 2.0 * std::numbers::pi * (sector + 0.5) / kSectors;
+    const double cosine = std::cos(angle), sine = std::sin(angle);
+    for (int ring = 0; ring < kRings; ++ring) {
+      // Rings of equal area; each ring's root-mean-square radius keeps the disc's second moment exact.
+      const double rho = radius * std::sqrt((ring + 0.5) / kRings);
+      const double from = line_start(rho * cosine, rho * sine, at_a, radius);
+      const double to = length - line_start(rho * cosine, rho * sine, at_b, radius);
+      if (to > from) moments.add_line(rho * cosine, rho * sine, from, to, area);
     }
   }
+  return moments.moved(frame, a);
 }
 
 /// Nodes without a cylinder are spheres of their own.
@@ -94,7 +106,7 @@ void add_lone_spheres(const Tube& tube, double wall, Moments& moments) {
 
 Moments solid_moments(const Tube& tube, double wall) {
   Moments moments;
-  for (std::size_t i = 0; i < tube.cylinders.size(); ++i) add_cylinder(tube, i, wall, moments);
+  for (std::size_t i = 0; i < tube.cylinders.size(); ++i) moments.add(cylinder_moments(tube, i, wall));
   add_lone_spheres(tube, wall, moments);
   return moments;
 }
@@ -103,7 +115,7 @@ Moments solid_moments(const Tube& tube, double wall) {
 
 MassProperties mass_properties(const Tube& tube) {
   Moments moments = solid_moments(tube, 0.0);
-  if (tube.wall_thickness > 0.0) moments.subtract(solid_moments(tube, tube.wall_thickness));
+  if (tube.wall_thickness > 0.0) moments.add(solid_moments(tube, tube.wall_thickness), -1.0);
   const double density = tube.mass / moments.volume;
   MassProperties properties;
   properties.mass = tube.mass;
