@@ -177,8 +177,8 @@ void drop_joints_at_ends(std::vector<Vec3>& nodes, double radius) {
   while (nodes.size() > 2 && (nodes[nodes.size() - 2] - nodes.back()).norm() < radius) nodes.erase(nodes.end() - 2);
 }
 
-/// Joints nearer to each other than `closest` become one in their middle: no tube bends so narrowly that it needs both, and
-/// a cylinder with hardly a point on it would be free to lean anywhere.
+/// Joints nearer to each other than `closest` become one in their middle: no tube bends so narrowly that it needs both,
+/// and a cylinder with hardly a point on it would be free to lean anywhere.
 void merge_close_joints(std::vector<Vec3>& nodes, double closest) {
   for (std::size_t k = 2; k + 1 < nodes.size();) {
     if ((nodes[k] - nodes[k - 1]).norm() >= closest) {
@@ -190,11 +190,11 @@ void merge_close_joints(std::vector<Vec3>& nodes, double closest) {
   }
 }
 
-/// Of so many of a stretch's points, one votes. Where smooth() takes means of r / 3 of a fully visible tube, eight votes, each
-/// off by r / 6, make them good to r / 17; a short stretch needs some hundred votes in all.
+/// Of so many of a stretch's points, one votes. Where smooth() takes means of r / 3 of a fully visible tube, eight
+/// votes, each off by r / 6, make them good to r / 17; a short stretch needs some hundred votes in all.
 std::size_t vote_stride(std::size_t points, double radius, double spacing) {
   constexpr double kVotesOfMean = 8.0, kVotesOfStretch = 300.0;
-  const double points_of_mean = 2.0 * radius * radius / 3.0 / (spacing * spacing);
+  const double points_of_mean = points_of_visible_stretch(radius, radius / 3.0, spacing);
   const double stride =
       std::min(std::round(points_of_mean / kVotesOfMean), std::floor(static_cast<double>(points) / kVotesOfStretch));
   return static_cast<std::size_t>(std::max(stride, 1.0));

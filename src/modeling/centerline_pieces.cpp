@@ -5,8 +5,8 @@
 #include "tubebin/modeling/branch_splitting.hpp"
 #include "tubebin/modeling/centerline_fitting.hpp"
 #include "tubebin/modeling/centerline_segmentation.hpp"
+#include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/flat_ends.hpp"
-#include "tubebin/modeling/normals.hpp"
 #include "tubebin/modeling/piece_cleaning.hpp"
 
 namespace tubebin {
@@ -39,7 +39,7 @@ std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vecto
 FilteredCloud part_of(const FilteredCloud& cloud, Segment selected, const ViewProjection& projection, double radius) {
   FilteredCloud part{.source = std::move(selected), .points = {}, .normals = {}, .spacing = cloud.spacing};
   for (const std::uint32_t i : part.source) part.points.push_back(cloud.points[i]);
-  part.normals = estimate_normals(projection, part.points, normal_radius(cloud.spacing, radius));
+  add_normals(part, projection, radius);
   return part;
 }
 

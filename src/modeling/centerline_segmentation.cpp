@@ -21,9 +21,9 @@ std::vector<Segment> segment_by_votes(const FilteredCloud& cloud, double radius)
   // of r / 2 stay clear of the nearest that two centrelines can come, r, by as much again for the scatter.
   const double voxel = radius / 3.0;
   const double link = radius / 2.0;
-  // A stretch of fully visible tube, 2 r wide, gives a voxel this many votes; what has a twentieth of that is either
-  // chance or a sliver narrower than the scatter.
-  const double full = 2.0 * radius * voxel / (cloud.spacing * cloud.spacing);
+  // A fully visible tube gives a voxel this many votes; what has a twentieth of that is either chance or a sliver
+  // narrower than the scatter.
+  const double full = points_of_visible_stretch(radius, voxel, cloud.spacing);
   const auto least = static_cast<std::size_t>(std::max(std::ceil(full / 20.0), 2.0));
   const VoteVoxels voxels(votes, voxel, least);
   const auto component = connected_components(voxels.size(), voxels.links(link));

@@ -29,9 +29,9 @@ class PointsAboutEnd {
   Vec3 offset(std::size_t i) const { return at(blocks_[i / kLanes].offset, i % kLanes); }
   Vec3 normal(std::size_t i) const { return at(blocks_[i / kLanes].normal, i % kLanes); }
 
-  /// The Gauss-Newton sums of the robust (Tukey) squared distances to the side of a cylinder from the node along `axis`,
-  /// by its far end: the Hessian's xx xy xz yy yz zz and the gradient's x y z. Points `band` metres off do not count;
-  /// neither do those whose normal stands more than 32 degrees off straight out.
+  /// The Gauss-Newton sums of the robust (Tukey) squared distances to the side of a cylinder from the node along
+  /// `axis`, by its far end: the Hessian's xx xy xz yy yz zz and the gradient's x y z. Points `band` metres off do not
+  /// count; neither do those whose normal stands more than 32 degrees off straight out.
   TUBEBIN_WIDE void sum_up(const Point& axis, float radius, float band, std::array<float, 9>& sums) const {
     const Lanes zero = {};
     const Lanes axis_x = zero + axis.x(), axis_y = zero + axis.y(), axis_z = zero + axis.z();

@@ -82,6 +82,10 @@ double normal_radius(double spacing, double radius) {
   return std::max(std::min(enough, 0.6 * radius), 1.5 * spacing);
 }
 
+double points_of_visible_stretch(double radius, double length, double spacing) {
+  return 2.0 * radius * length / (spacing * spacing);
+}
+
 ViewProjection view_of(const ModelingInput& input) {
   Eigen::AlignedBox3f box;
   for (const Point& p : input.points)

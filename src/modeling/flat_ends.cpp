@@ -53,8 +53,9 @@ std::optional<FlatEnd> find_flat_end(const Vec3& tip, const Vec3& outward, const
   return end;
 }
 
-/// Polylines that end in the flat end: the last cylinder made longer or shorter, straight from one of the last nodes, or with a joint where the flat end's axis
-/// passes nearest to the cylinder before. Only nodes near the end may go or move.
+/// Polylines that end in the flat end: the last cylinder made longer or shorter, straight from one of the last nodes,
+/// or with a joint where the flat end's axis passes nearest to the cylinder before. Only nodes near the end may go or
+/// move.
 std::vector<std::vector<Vec3>> possible_courses(const std::vector<Vec3>& nodes, const FlatEnd& end, double radius) {
   std::vector<std::vector<Vec3>> courses;
   const Vec3 last = (nodes.back() - nodes[nodes.size() - 2]).normalized();

@@ -112,8 +112,8 @@ class Neighborhoods {
 
   std::span<const Point> points_;
   float radius_;
-  /// Half the radius, as seen at the nearest range: the disc covers most of the 5 x 5 cells searched there, and fewer of
-  /// them farther away.
+  /// Half the radius, as seen at the nearest range: the disc covers most of the 5 x 5 cells searched there, and fewer
+  /// of them farther away.
   float cell_;
   ViewGrid grid_;
   SortedPoints sorted_;
@@ -169,10 +169,6 @@ TUBEBIN_WIDE void plane_normals(const std::array<Moments, kPlanes>& moments,
 }
 
 }  // namespace
-
-std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<const Point> points, double radius) {
-  return estimate_normals(projection, points, radius, 1);
-}
 
 std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<const Point> points, double radius,
                                     std::size_t stride) {

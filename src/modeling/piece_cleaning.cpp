@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/labeling.hpp"
 
 namespace tubebin {
@@ -31,7 +32,7 @@ std::vector<bool> explained(std::span<const Point> points, const std::vector<Tub
 
 /// Longer than wide, and at least a third of its visible width is there.
 bool is_well_seen(const TubePiece& piece, double spacing) {
-  const double full = 2.0 * piece.radius * piece.length() / (spacing * spacing);
+  const double full = points_of_visible_stretch(piece.radius, piece.length(), spacing);
   return piece.length() > 2.0 * piece.radius && static_cast<double>(piece.points.size()) > 0.3 * full;
 }
 

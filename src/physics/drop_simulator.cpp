@@ -27,8 +27,8 @@ DropResult failed(DropFailure failure, std::string detail, DropFigures figures =
   return result;
 }
 
-/// How steps are taken. Iterations grow where a pile does not come to rest: what still moves or creeps under a solver that
-/// did not converge may stand under one that does.
+/// How steps are taken. Iterations grow where a pile does not come to rest: what still moves or creeps under a solver
+/// that did not converge may stand under one that does.
 class Pace {
  public:
   explicit Pace(const PhysicsOptions& options) : options_(options), next_boost_(options.solver_patience) {}
@@ -65,16 +65,17 @@ class Pace {
 bool settle(RigidWorld& world, const Bin& bin, const PhysicsOptions& options, DropFigures& figures, RestProof& proof) {
   Pace pace(options);
   double& time = figures.simulated_seconds;
-  double last_fast = 0.0;  // seconds; when a tube was last fast
+  double last_fast = 0.0;  // seconds
+  bool all_slow = false;   // for the rest window
   while (!proof.is_complete(time)) {
     if (have_passed(options.time_limit, 0.0, time) || find_outside(world, bin)) return false;
     pace.boost_if_late(time);
-    const StepSettings settings = pace.settings(have_passed(options.rest_window, last_fast, time));
+    const StepSettings settings = pace.settings(all_slow);
     world.step(settings);
     ++figures.steps;
     time += settings.time_step;
     if (!is_slow(world, options)) last_fast = time;
-    const bool all_slow = have_passed(options.rest_window, last_fast, time);
+    all_slow = have_passed(options.rest_window, last_fast, time);
     if (all_slow && !proof.has_started()) pace.start_proof(time);
     proof.observe(nodes_in_world(world.tubes()), time, all_slow);
   }

@@ -8,7 +8,7 @@
 
 namespace tubebin {
 
-/// All in seconds of simulated time.
+/// Whether `seconds` have passed between two moments, up to the rounding of a sum of steps. All of simulated time.
 bool have_passed(double seconds, double since, double now);
 
 /// Every tube's nodes, one after another.

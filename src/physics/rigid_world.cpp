@@ -3,7 +3,6 @@
 #include <ode/ode.h>
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 #include <stdexcept>
 

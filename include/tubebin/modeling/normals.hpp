@@ -9,11 +9,10 @@
 namespace tubebin {
 
 /// Unit normals toward the viewpoint by least-squares planes through the neighbours within `radius` metres; zero where
-/// a point has fewer than five neighbours or they do not span a plane.
-std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<const Point> points, double radius);
-/// The same of every stride-th point alone, from the neighbours among all: those of points 0, stride, 2 stride, ...
+/// a point has fewer than five neighbours or they do not span a plane. Of every stride-th point, beginning with the
+/// first, from its neighbours among all points.
 std::vector<Point> estimate_normals(const ViewProjection& projection, std::span<const Point> points, double radius,
-                                    std::size_t stride);
+                                    std::size_t stride = 1);
 
 /// Points within `radius` metres of each point, itself included.
 std::vector<int> count_neighbors(const ViewProjection& projection, std::span<const Point> points, double radius);
