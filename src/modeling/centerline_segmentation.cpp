@@ -35,6 +35,9 @@ std::vector<Segment> segment_by_votes(const FilteredCloud& cloud, double radius)
     if (component[v] >= segments.size()) segments.resize(component[v] + 1);
     segments[component[v]].push_back(voters[k]);
   }
+  // A cylinder of known radius has four unknowns: fewer points are near one wherever they lie, and bits of tubes that
+  // lead anywhere only tempt the joining.
+  std::erase_if(segments, [](const Segment& segment) { return segment.size() < 4; });
   return segments;
 }
 

@@ -39,8 +39,8 @@ void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double 
 /// with normals: the cloud's, or, where it has none, from neighbours among all of its points. `radius`: of the tubes.
 FilteredCloud thinned(const FilteredCloud& cloud, double apart, const ViewProjection& projection, double radius);
 
-/// Radius of the neighbourhoods of normals, metres: large enough for some 25 points, which average the noise, and small
-/// enough that the surface is nearly flat.
+/// Radius of the neighbourhoods of normals, metres: large enough for some 25 points, which average the noise, where they
+/// lie within half a tube's radius and the surface is nearly flat; else for some 16, within 0.6 radii.
 double normal_radius(double spacing, double radius);
 
 /// How many points show a stretch of tube that is fully visible, 2 r wide. Both and the points' spacing in metres.
