@@ -8,6 +8,7 @@
 #include "modeling/boxed_curve.hpp"
 #include "tubebin/core/random.hpp"
 #include "tubebin/modeling/end_growth.hpp"
+#include "tubebin/modeling/flat_ends.hpp"
 #include "tubebin/modeling/surface_fitting.hpp"
 
 namespace tubebin {
@@ -222,6 +223,8 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Stretc
 
   TubePiece piece{.nodes = {}, .radius = radius, .points = segment};
   if (curve.size() < 2 || polyline_length(curve) < 2.0 * radius) {
+    piece.nodes = axis_of_flat_end(surface, radius);
+    if (!piece.nodes.empty()) return piece;
     piece.nodes = axis_from_normals(votes, radius);
   } else {
     piece.nodes = {curve.front()};

@@ -1,5 +1,6 @@
 #include "tubebin/modeling/flat_ends.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,6 +9,8 @@
 
 namespace tubebin {
 namespace {
+
+constexpr double kParallel = 0.94;  // the cosine of 20 degrees
 
 struct FlatEnd {
   Vec3 center = Vec3::Zero();
@@ -37,7 +40,7 @@ std::optional<FlatEnd> find_flat_end(const Vec3& tip, const Vec3& outward, const
     on_plane.clear();
     mean.setZero();
     for (const std::uint32_t i : near)
-      if (unexplained.normals[i].cast<double>().dot(end.outward) > 0.94) {  // 20 degrees
+      if (unexplained.normals[i].cast<double>().dot(end.outward) > kParallel) {
         on_plane.push_back(unexplained.points[i].cast<double>());
         mean += unexplained.normals[i].cast<double>();
       }
@@ -119,7 +122,42 @@ void fit_last_end(TubePiece& piece, const FilteredCloud& cloud, const FilteredCl
   }
 }
 
+/// The surface whose normals are parallel to the one that most are parallel to.
+std::vector<SurfacePoint> mostly_parallel(std::span<const SurfacePoint> surface) {
+  constexpr std::size_t kTries = 32;
+  std::vector<SurfacePoint> most;
+  for (std::size_t i = 0; i < surface.size(); i += surface.size() / kTries + 1) {
+    std::vector<SurfacePoint> parallel;
+    std::ranges::copy_if(surface, std::back_inserter(parallel),
+                         [&](const SurfacePoint& other) { return other.normal.dot(surface[i].normal) > kParallel; });
+    if (parallel.size() > most.size()) most = std::move(parallel);
+  }
+  return most;
+}
+
+/// Of an even spread of points: the width of a rectangle that is spread as far, across its longer side.
+double width_of(std::span<const SurfacePoint> surface, const Vec3& center) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const auto& [point, normal] : surface) covariance += (point - center) * (point - center).transpose();
+  covariance /= static_cast<double>(surface.size());
+  return std::sqrt(12.0 * Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[1]);
+}
+
 }  // namespace
+
+std::vector<Vec3> axis_of_flat_end(std::span<const SurfacePoint> surface, double radius) {
+  const std::vector<SurfacePoint> plane = mostly_parallel(surface);
+  if (2 * plane.size() < surface.size()) return {};
+  Vec3 center = Vec3::Zero(), outward = Vec3::Zero();
+  for (const auto& [point, normal] : plane) center += point, outward += normal;
+  center /= static_cast<double>(plane.size());
+  // A side with such normals is a strip 2 r sin 20 degrees = 0.7 r wide.
+  if (width_of(plane, center) < radius) return {};
+  outward.normalize();
+  double depth = radius;
+  for (const auto& [point, normal] : surface) depth = std::max(depth, (center - point).dot(outward));
+  return {center - depth * outward, center};
+}
 
 void fit_flat_ends(std::vector<TubePiece>& pieces, const FilteredCloud& cloud, const FilteredCloud& unexplained) {
   if (unexplained.points.empty()) return;
