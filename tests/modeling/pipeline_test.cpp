@@ -119,6 +119,22 @@ TEST(Pipeline, BridgesWhatAnotherTubeHides) {
   }
 }
 
+TEST(Pipeline, ASteepTubeOfFewPointsStaysOne) {
+  // Rows of points lie far apart along it, and some of 60 samples give them gaps.
+  const Scene scene = scene_of({tube_along({{-0.05, -0.1154, 0.2},
+                                            {-0.05, -0.05, 0.16},
+                                            {0.004, -0.016, 0.0336},
+                                            {0.031, 0.008, 0.0157},
+                                            {0.054, 0.034, 0.0125},
+                                            {0.091, 0.074, 0.0378},
+                                            {0.132, 0.076, 0.045}})});
+  const Cloud cloud = scan(scene).cloud;
+  ModelingOptions options = known_radius();
+  options.filtering.ratio = 0.3;
+  for (options.seed = 1; options.seed <= 60; ++options.seed)
+    EXPECT_GE(micro_recall_of(model_tubes(input_of(cloud, scene.bin), options), cloud), 0.99) << options.seed;
+}
+
 TEST(Pipeline, EstimatesTheRadiusThatNobodyStates) {
   const Scene scene = one_over_three();
   const Cloud cloud = scan(scene).cloud;
