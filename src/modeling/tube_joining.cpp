@@ -26,7 +26,7 @@ constexpr double kJoinCostLimit = 7.0;
 constexpr double kClearJoinCost = -2.0;
 constexpr std::size_t kNodeLimit = 1000;
 /// The right join is among an end's cheapest few, or it could not be told from chance anyhow.
-constexpr std::size_t kJoinsPerEnd = 3;
+constexpr std::size_t kJoinsPerEnd = 4;
 constexpr std::size_t kPathLimit = 200;
 
 /// A chain of pieces under construction: enters its last piece at one end and may leave it by the other.
