@@ -126,8 +126,17 @@ def record(program: Program, output: Path) -> None:
     program.penetrations += [outcome.deepest_penetration(nodes) for nodes in scenes]
 
 
+def warm_up(rows: list[Program], arguments: argparse.Namespace) -> None:
+    """So that no program is read from the disk while it is timed."""
+    few = argparse.Namespace(**{**vars(arguments), "cases": arguments.jobs})
+    for program in rows:
+        with tempfile.TemporaryDirectory() as folder:
+            run(program, few, arguments.seed, Path(folder) / "scenes")
+
+
 def measure(rows: list[Program], arguments: argparse.Namespace) -> None:
     """Timed rounds, each starting with another program; the peers' drift comes from a run that is not timed."""
+    warm_up(rows, arguments)
     for round_index in range(arguments.rounds):
         for turn in range(len(rows)):
             program = rows[(turn + round_index) % len(rows)]
