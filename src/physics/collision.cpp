@@ -170,7 +170,7 @@ std::optional<Touch> touch_box_with_ball(const Box& box, const Vec3& center, dou
   return Touch{center, normal, out + radius};
 }
 
-/// Places all over a disc of radius 1; those on its rim come last.
+/// Places all over a disc of radius 1.
 std::vector<Eigen::Vector2d> disc_places() {
   constexpr int kAround = 64, kRings = 8;
   std::vector<Eigen::Vector2d> places;
@@ -261,6 +261,14 @@ Box inflated(const Box& box, double margin) {
   return {box.min() - Vec3::Constant(margin), box.max() + Vec3::Constant(margin)};
 }
 
+/// The closest points of two pieces' axes where the pieces come within `gap` (metres).
+std::optional<SegmentPair> closest_within(const Piece& first, const Piece& second, double gap) {
+  const SegmentPair closest = closest_on_segments(first.axis, second.axis);
+  const double reach = first.radius + second.radius + gap;
+  if ((first.axis.at(closest.s) - second.axis.at(closest.t)).squaredNorm() > reach * reach) return std::nullopt;
+  return closest;
+}
+
 }  // namespace
 
 void find_near_pieces(const CollisionTube& first, const CollisionTube& second, double reach,
@@ -268,10 +276,14 @@ void find_near_pieces(const CollisionTube& first, const CollisionTube& second, d
   const Box reached = inflated(second.bounds, reach);
   if (!first.bounds.intersects(reached)) return;
   for (std::uint32_t i = 0; i < first.pieces.size(); ++i) {
-    if (!first.pieces[i].bounds.intersects(reached)) continue;
-    const Box piece_reach = inflated(first.pieces[i].bounds, reach);
-    for (std::uint32_t j = 0; j < second.pieces.size(); ++j)
-      if (piece_reach.intersects(second.pieces[j].bounds)) out.push_back({i, j});
+    const Piece& p = first.pieces[i];
+    if (!p.bounds.intersects(reached)) continue;
+    const Box piece_reach = inflated(p.bounds, reach);
+    for (std::uint32_t j = 0; j < second.pieces.size(); ++j) {
+      const Piece& q = second.pieces[j];
+      if (!piece_reach.intersects(q.bounds)) continue;
+      if (closest_within(p, q, reach)) out.push_back({i, j});
+    }
   }
 }
 
@@ -285,14 +297,13 @@ void collide(const CollisionTube& first, const CollisionTube& second, const std:
              double depth_min, std::vector<Touch>& out) {
   const std::size_t begin = out.size();
   const double gap = -std::min(depth_min, 0.0);
-  const double touching = first.radius + second.radius + gap;
   for (const PiecePair& pair : pairs) {
     const Piece& p = first.pieces[pair.first];
     const Piece& q = second.pieces[pair.second];
     if (!p.bounds.intersects(inflated(q.bounds, gap))) continue;
-    const SegmentPair closest = closest_on_segments(p.axis, q.axis);
-    if ((p.axis.at(closest.s) - q.axis.at(closest.t)).squaredNorm() > touching * touching) continue;
-    if (const auto touch = touch_pieces(p, q, closest, depth_min)) out.push_back(*touch);
+    const auto closest = closest_within(p, q, gap);
+    if (!closest) continue;
+    if (const auto touch = touch_pieces(p, q, *closest, depth_min)) out.push_back(*touch);
     if (p.direction.cross(q.direction).squaredNorm() < kParallelSine * kParallelSine)
       add_line_touches(p, q, depth_min, out);
   }

@@ -63,7 +63,7 @@ struct PiecePair {
   std::uint32_t second = 0;
 };
 
-/// Appends the pairs of pieces whose bounds come within `reach` (metres).
+/// Appends the pairs of pieces that come within `reach` (metres).
 void find_near_pieces(const CollisionTube& first, const CollisionTube& second, double reach,
                       std::vector<PiecePair>& out);
 

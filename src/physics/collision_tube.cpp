@@ -10,8 +10,8 @@ SolidCylinder Piece::solid(double eroded_by) const {
 
 namespace {
 
-/// What does not depend on the pose of the joints.
-void begin_joints(const Tube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
+/// What does not depend on the pose, and room for what does.
+void begin_parts(const Tube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
   const std::vector<double> radii = tube.node_radii();
   out.radius = tube.radius_max();
   out.nodes.resize(tube.nodes.size());
@@ -23,7 +23,7 @@ void begin_joints(const Tube& tube, const std::vector<int>& node_degrees, Collis
 }  // namespace
 
 void update_collision_tube(const PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
-  if (out.radius == 0.0) begin_joints(tube.tube, node_degrees, out);
+  if (out.radius == 0.0) begin_parts(tube.tube, node_degrees, out);
   out.bounds.setEmpty();
   auto joint = out.joints.begin();
   for (std::size_t i = 0; i < out.nodes.size(); ++i) {

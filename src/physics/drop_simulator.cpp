@@ -77,7 +77,7 @@ bool settle(RigidWorld& world, const Bin& bin, const PhysicsOptions& options, Dr
     if (!is_slow(world, options)) last_fast = time;
     all_slow = have_passed(options.rest_window, last_fast, time);
     if (all_slow && !proof.has_started()) pace.start_proof(time);
-    proof.observe(nodes_in_world(world.tubes()), time, all_slow);
+    if (all_slow || proof.is_under_way()) proof.observe(nodes_in_world(world.tubes()), time, all_slow);
   }
   figures.largest_drift = proof.drift();
   return true;

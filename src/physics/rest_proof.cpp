@@ -18,6 +18,9 @@ bool have_passed(double seconds, double since, double now) {
 
 std::vector<Vec3> nodes_in_world(const std::vector<PlacedTube>& tubes) {
   std::vector<Vec3> nodes;
+  std::size_t count = 0;
+  for (const PlacedTube& tube : tubes) count += tube.tube.nodes.size();
+  nodes.reserve(count);
   for (const PlacedTube& tube : tubes)
     for (const Vec3& node : tube.tube.nodes) nodes.push_back(tube.world_from_tube * node);
   return nodes;

@@ -27,6 +27,7 @@ class RestProof {
   void observe(std::vector<Vec3> nodes, double time, bool may_start);
 
   bool has_started() const { return last_start_.has_value(); }
+  bool is_under_way() const { return !starts_.empty(); }
   bool is_complete(double time) const;
   /// Metres; in the time that proves it, once it is complete.
   double drift() const { return starts_.front().drift; }

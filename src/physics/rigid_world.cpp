@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <mutex>
 #include <stdexcept>
+#include <utility>
 
 #include "physics/near_pieces.hpp"
 #include "physics/warm_start.hpp"
@@ -74,7 +75,6 @@ struct RigidWorld::Impl {
   }
 
   void find_contacts() {
-    contacts.clear();
     const auto append = [&](std::size_t first, std::size_t second) {
       for (const Touch& touch : touches) contacts.push_back({.first = first, .second = second, .touch = touch});
       touches.clear();
@@ -136,7 +136,9 @@ struct RigidWorld::Impl {
 
   /// Finds the contacts, solves the step, and leaves in the contacts what they bore.
   void solve(const StepSettings& settings) {
-    WarmStart warm_start(std::move(contacts));
+    const std::size_t room = 2 * contacts.size();
+    WarmStart warm_start(std::exchange(contacts, {}));
+    contacts.reserve(room);
     find_contacts();
     std::vector<dJointFeedback> feedback(contacts.size());
     for (std::size_t i = 0; i < contacts.size(); ++i) {

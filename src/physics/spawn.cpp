@@ -1,5 +1,8 @@
 #include "physics/spawn.hpp"
 
+#include <limits>
+#include <utility>
+
 #include "physics/collision.hpp"
 
 namespace tubebin {
@@ -49,11 +52,16 @@ CollisionTube moved(CollisionTube shape, const Vec3& by) {
   return shape;
 }
 
-/// The lowest height offset, in steps of a radius, at which the shape is free.
-double lowest_free_height(const CollisionTube& shape, const std::vector<CollisionTube>& placed, double clearance) {
-  double height = 0.0;
-  while (overlaps(moved(shape, {0.0, 0.0, height}), placed, clearance)) height += shape.radius;
-  return height;
+/// The shape at the lowest height, in steps of a radius from where it is, at which it is free and all of it is below
+/// `top_max`; and how far that is. Nothing where there is none.
+std::optional<std::pair<CollisionTube, double>> raised_until_free(const CollisionTube& shape,
+                                                                  const std::vector<CollisionTube>& placed,
+                                                                  double clearance, double top_max) {
+  for (double height = 0.0; shape.bounds.max().z() + height < top_max; height += shape.radius) {
+    CollisionTube raised = moved(shape, {0.0, 0.0, height});
+    if (!overlaps(raised, placed, clearance)) return std::pair{std::move(raised), height};
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -71,15 +79,17 @@ std::optional<std::vector<PlacedTube>> spawn(const std::vector<Tube>& tubes, con
                       (0.5 * (Vec3(bin.length, bin.width, 0.0) - bounds.sizes()) - Vec3::Constant(clearance));
     PlacedTube lowest{tube, Pose::Identity()};
     CollisionTube lowest_shape;
+    double top_max = std::numeric_limits<double>::infinity();
     for (int i = 0; i < options.spawn_tries; ++i) {
       const double x = random.uniform(-room.x(), room.x());
       const double y = random.uniform(-room.y(), room.y());
       const Vec3 start(x - bounds.center().x(), y - bounds.center().y(), bin.height + clearance - bounds.min().z());
       const CollisionTube shape = collision_tube({tube, make_pose(*rotation, start)});
-      const Vec3 rise(0.0, 0.0, lowest_free_height(shape, placed, clearance));
-      if (i > 0 && shape.bounds.max().z() + rise.z() >= lowest_shape.bounds.max().z()) continue;
-      lowest.world_from_tube = make_pose(*rotation, start + rise);
-      lowest_shape = moved(shape, rise);
+      auto raised = raised_until_free(shape, placed, clearance, top_max);
+      if (!raised) continue;
+      lowest_shape = std::move(raised->first);
+      top_max = lowest_shape.bounds.max().z();
+      lowest.world_from_tube = make_pose(*rotation, start + Vec3(0.0, 0.0, raised->second));
     }
     spawned.push_back(lowest);
     placed.push_back(lowest_shape);

@@ -1,14 +1,22 @@
 #include "physics/warm_start.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace tubebin {
+namespace {
+
+/// In the order of contacts; the bin comes before all tubes.
+std::pair<std::size_t, std::size_t> bodies(const StepContact& contact) { return {contact.second, contact.first + 1}; }
+
+}  // namespace
 
 const StepContact* WarmStart::take(const StepContact& contact, double reach) {
   constexpr double kSameDirection = 0.9;  // cosine
-  for (std::size_t i = 0; i < before_.size(); ++i) {
+  while (begin_ < before_.size() && bodies(before_[begin_]) < bodies(contact)) ++begin_;
+  for (std::size_t i = begin_; i < before_.size() && bodies(before_[i]) == bodies(contact); ++i) {
     const StepContact& old = before_[i];
-    if (taken_[i] || old.first != contact.first || old.second != contact.second) continue;
+    if (taken_[i]) continue;
     if ((old.touch.position - contact.touch.position).squaredNorm() > reach * reach) continue;
     if (old.touch.normal.dot(contact.touch.normal) < kSameDirection) continue;
     taken_[i] = true;

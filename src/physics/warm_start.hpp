@@ -33,7 +33,8 @@ struct StepContact {
   double normal_force_before = 0.0;  ///< N, of the step before
 };
 
-/// This step's contacts take over what they know of the step `before`; each of those is taken once.
+/// This step's contacts take over what they know of the step `before`; each of those is taken once. In both steps they
+/// come by their second body, those of one by the first.
 class WarmStart {
  public:
   explicit WarmStart(std::vector<StepContact> before) : before_(std::move(before)), taken_(before_.size(), false) {}
@@ -48,6 +49,7 @@ class WarmStart {
 
   std::vector<StepContact> before_;
   std::vector<bool> taken_;
+  std::size_t begin_ = 0;  ///< of those that are not of bodies before the last contact's
 };
 
 }  // namespace tubebin

@@ -56,6 +56,21 @@ TEST(WarmStart, StartsFromNothingWhereItIsAnotherContactOrMoves) {
   EXPECT_FALSE(starts(other, true));
 }
 
+TEST(WarmStart, FindsEachContactAmongThoseOfItsBodies) {
+  std::vector<StepContact> before(4, contact_at(Vec3::Zero()));
+  before[0].first = kBinBody, before[0].second = 0;
+  before[1].first = kBinBody, before[1].second = 1;
+  before[2].first = 0, before[2].second = 1;
+  before[3].first = kBinBody, before[3].second = 2;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    before[i].load.force_on_second = Vec3(0, 0, static_cast<double>(i + 1));
+  WarmStart warm_start(before);
+  for (const std::size_t i : {0u, 2u, 3u}) {  // the second is gone
+    StepContact now = before[i];
+    EXPECT_EQ(warm_start.start(now, 1.0, kReach, true).force_on_second, before[i].load.force_on_second);
+  }
+}
+
 PlacedTube lying(double x, double z, bool along_x) {
   const Vec3 end = along_x ? Vec3(0.2, 0, 0) : Vec3(0, 0.2, 0);
   const Tube tube{.radius = 0.0125, .mass = 0.05, .nodes = {-0.5 * end, 0.5 * end}, .cylinders = {{0, 1, 0}}};
