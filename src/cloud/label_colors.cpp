@@ -1,5 +1,6 @@
 #include "tubebin/cloud/label_colors.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -16,16 +17,21 @@ constexpr int kGridStep = 8;
 constexpr double kMinLightness = 0.40;
 constexpr double kMaxLightness = 0.93;
 
-double linear_from_srgb(Color channel) {
-  const double s = static_cast<double>(channel) / 255.0;
-  return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+/// Of every value of a channel.
+std::array<double, 256> linear_from_srgb() {
+  std::array<double, 256> linear;
+  for (std::size_t channel = 0; channel < linear.size(); ++channel) {
+    const double s = static_cast<double>(channel) / 255.0;
+    linear[channel] = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+  }
+  return linear;
 }
 
 /// OKLab, where distances are close to how different people see colours (B. Ottosson, "A perceptual color
 /// space for image processing", 2020).
 Vec3 oklab(Color color) {
-  const Vec3 rgb(linear_from_srgb(color >> 16 & 0xFF), linear_from_srgb(color >> 8 & 0xFF),
-                 linear_from_srgb(color & 0xFF));
+  static const std::array<double, 256> linear = linear_from_srgb();
+  const Vec3 rgb(linear[color >> 16 & 0xFF], linear[color >> 8 & 0xFF], linear[color & 0xFF]);
   Eigen::Matrix3d cones_from_rgb;
   cones_from_rgb << 0.4122214708, 0.5363325363, 0.0514459929, 0.2119034982, 0.6806995451, 0.1073969566, 0.0883024619,
       0.2817188376, 0.6299787005;

@@ -14,6 +14,23 @@ namespace {
 constexpr int kRings = 12;
 constexpr int kSectors = 32;
 
+/// The product rule on a disc of radius 1: rings of equal area, each of whose root-mean-square radius keeps the disc's
+/// second moment exact.
+struct DiscRule {
+  std::array<double, kRings> radii;
+  std::array<double, kSectors> cosines, sines;
+
+  DiscRule() {
+    for (std::size_t ring = 0; ring < kRings; ++ring)
+      radii[ring] = std::sqrt((static_cast<double>(ring) + 0.5) / kRings);
+    for (std::size_t sector = 0; sector < kSectors; ++sector) {
+      const double angle = 2.0 * std::numbers::pi * (static_cast<double>(sector) + 0.5) / kSectors;
+      cosines[sector] = std::cos(angle);
+      sines[sector] = std::sin(angle);
+    }
+  }
+};
+
 /// Volume, first and second moments of a solid at unit density.
 struct Moments {
   double volume = 0.0;
@@ -26,17 +43,6 @@ struct Moments {
     second += sign * other.second;
   }
 
-  /// Adds the points (x, y, z) with z in [from, to], each with cross-section `area`.
-  void add_line(double x, double y, double from, double to, double area) {
-    const double m0 = area * (to - from);
-    const double m1 = area * (to * to - from * from) / 2.0;
-    const double m2 = area * (to * to * to - from * from * from) / 3.0;
-    volume += m0;
-    first += Vec3(m0 * x, m0 * y, m1);
-    const double xy = m0 * x * y, xz = m1 * x, yz = m1 * y;
-    second += Eigen::Matrix3d{{m0 * x * x, xy, xz}, {xy, m0 * y * y, yz}, {xz, yz, m2}};
-  }
-
   /// The solid's moments once it is rotated, then moved.
   Moments moved(const Eigen::Matrix3d& rotation, const Vec3& offset) const {
     const Vec3 turned = rotation * first;
@@ -45,6 +51,33 @@ struct Moments {
         volume, turned + volume * offset,
         rotation * second * rotation.transpose() + mixed + mixed.transpose() + volume * offset * offset.transpose()};
   }
+};
+
+/// Moments of lines along z, each with a cross-section of `area`.
+class LineMoments {
+ public:
+  explicit LineMoments(double area) : area_(area) {}
+
+  /// Adds the points (x, y, z) with z in [from, to].
+  void add(double x, double y, double from, double to) {
+    const double m0 = area_ * (to - from);
+    const double m1 = area_ * (to * to - from * from) / 2.0;
+    const double m2 = area_ * (to * to * to - from * from * from) / 3.0;
+    volume_ += m0;
+    x_ += m0 * x, y_ += m0 * y, z_ += m1;
+    xx_ += m0 * x * x, xy_ += m0 * x * y, yy_ += m0 * y * y;
+    xz_ += m1 * x, yz_ += m1 * y, zz_ += m2;
+  }
+
+  Moments sum() const {
+    return {volume_, {x_, y_, z_}, Eigen::Matrix3d{{xx_, xy_, xz_}, {xy_, yy_, yz_}, {xz_, yz_, zz_}}};
+  }
+
+ private:
+  double area_;
+  double volume_ = 0.0;
+  double x_ = 0.0, y_ = 0.0, z_ = 0.0;
+  double xx_ = 0.0, xy_ = 0.0, yy_ = 0.0, xz_ = 0.0, yz_ = 0.0, zz_ = 0.0;
 };
 
 /// Where the cylinder's share of the line at (x, y) begins, in a frame whose z axis points from the joint into the
@@ -74,20 +107,17 @@ Moments cylinder_moments(const Tube& tube, std::size_t index, double wall) {
   std::vector<Vec3> at_b = tube.directions_from(cylinder.node_b, index);
   for (Vec3& direction : at_a) direction = frame.transpose() * direction;
   for (Vec3& direction : at_b) direction = (frame.transpose() * direction).cwiseProduct(Vec3(1.0, 1.0, -1.0));
-  Moments moments;
-  const double area = std::numbers::pi * radius * radius / (kRings * kSectors);
-  for (int sector = 0; sector < kSectors; ++sector) {
-    const double angle = 2.0 * std::numbers::pi * (sector + 0.5) / kSectors;
-    const double cosine = std::cos(angle), sine = std::sin(angle);
-    for (int ring = 0; ring < kRings; ++ring) {
-      // Rings of equal area; each ring's root-mean-square radius keeps the disc's second moment exact.
-      const double rho = radius * std::sqrt((ring + 0.5) / kRings);
-      const double from = line_start(rho * cosine, rho * sine, at_a, radius);
-      const double to = length - line_start(rho * cosine, rho * sine, at_b, radius);
-      if (to > from) moments.add_line(rho * cosine, rho * sine, from, to, area);
+  static const DiscRule rule;
+  LineMoments lines(std::numbers::pi * radius * radius / (kRings * kSectors));
+  for (std::size_t sector = 0; sector < kSectors; ++sector)
+    for (const double share : rule.radii) {
+      const double rho = radius * share;
+      const double x = rho * rule.cosines[sector], y = rho * rule.sines[sector];
+      const double from = line_start(x, y, at_a, radius);
+      const double to = length - line_start(x, y, at_b, radius);
+      if (to > from) lines.add(x, y, from, to);
     }
-  }
-  return moments.moved(frame, a);
+  return lines.sum().moved(frame, a);
 }
 
 /// Nodes without a cylinder are spheres of their own.
