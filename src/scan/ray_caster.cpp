@@ -16,9 +16,6 @@ namespace {
 /// in double precision.
 constexpr double kBoundsPadding = 32.0 * 0x1p-24;
 
-/// The single precision bound just beyond a depth, so that what is equally deep is still looked at.
-float beyond(double depth) { return static_cast<float>(std::max(depth, 0.0)) * (1.0F + 0x1p-22F) + 1e-9F; }
-
 /// What Embree hands through to the callbacks. A ray's id is its lane.
 struct PacketQuery : embree::QueryContext {
   explicit PacketQuery(RayPacket& rays) : packet(rays) { embree::init_context(*this); }
@@ -52,10 +49,10 @@ void intersect_solid(const RTCIntersectFunctionNArguments* arguments) {
   RayPacket& packet = static_cast<PacketQuery*>(arguments->context)->packet;
   packet.offer(solid);
   RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, arguments->N);
+  if (arguments->N == kLanes) return packet.limit(std::span<float, kLanes>(&RTCRayN_tfar(rays, kLanes, 0), kLanes));
   for (unsigned i = 0; i < arguments->N; ++i) {
-    float& search_end = RTCRayN_tfar(rays, arguments->N, i);
-    const int lane = static_cast<int>(RTCRayN_id(rays, arguments->N, i));
-    search_end = std::min(search_end, beyond(packet.depth(lane)));
+    float& end = RTCRayN_tfar(rays, arguments->N, i);
+    end = std::min(end, search_end(packet.depth(static_cast<int>(RTCRayN_id(rays, arguments->N, i)))));
   }
 }
 
@@ -73,6 +70,16 @@ void attach(const embree::Device& device, const embree::Scene& scene, const Soli
 void check_device(const embree::Device& device) {
   const RTCError error = rtcGetDeviceError(device.get());
   if (error != RTC_ERROR_NONE) throw std::runtime_error(fmt::format("Embree failed with error {}", int{error}));
+}
+
+/// One for all scenes: making it takes a third of a millisecond.
+const embree::Device& device() {
+  static const embree::Device device = [] {
+    embree::Device made(rtcNewDevice("threads=1"));
+    check_device(made);
+    return made;
+  }();
+  return device;
 }
 
 float search_start(double depth_min) { return std::max(0.0F, static_cast<float>(depth_min) * (1.0F - 0x1p-22F)); }
@@ -139,17 +146,11 @@ RayCaster::RayCaster(SceneSolids solids, double depth_min, double depth_max)
     : solids_(std::move(solids)),
       depth_min_(depth_min - kDepthTolerance),
       depth_max_(depth_max + kDepthTolerance),
-      device_(rtcNewDevice("threads=1")) {
-  check_device(device_);
-  scene_.reset(rtcNewScene(device_.get()));
-  attach(device_, scene_, solids_.cylinders);
-  attach(device_, scene_, solids_.spheres);
+      scene_(rtcNewScene(device().get())) {
+  attach(device(), scene_, solids_.cylinders);
+  attach(device(), scene_, solids_.spheres);
   rtcCommitScene(scene_.get());
-  check_device(device_);
-}
-
-float RayCaster::search_end(const RayPacket& packet, int lane) const {
-  return beyond(std::min(depth_max_, packet.depth(lane)));
+  check_device(device());
 }
 
 Hit RayCaster::first_hit(const Vec3& direction) const {
@@ -160,39 +161,55 @@ Hit RayCaster::first_hit(const Vec3& direction) const {
   ray.ray.dir_y = static_cast<float>(direction.y());
   ray.ray.dir_z = static_cast<float>(direction.z());
   ray.ray.tnear = search_start(depth_min_);
-  ray.ray.tfar = search_end(packet, 0);
+  ray.ray.tfar = search_end(std::min(depth_max_, packet.depth(0)));
   ray.ray.mask = ~0U;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   PacketQuery query(packet);
   embree::intersect(scene_.get(), query, ray);
-  return decide(packet, 0);
+  decide(packet, 1);
+  return packet.first(0);
 }
 
-void RayCaster::first_hits(std::span<const Vec3> directions, std::span<Hit> hits) const {
-  RayPacket packet(directions, depth_min_);
-  packet.offer_bin(solids_.bin);
+void RayCaster::find_first_hits(RayPacket& packet, int count, const BodiesInReach& bodies) const {
+  packet.offer_bin(solids_.bin, bodies.boxes);
+  if (bodies.solid_count > BodiesInReach::kFew) offer_by_tree(packet, count);
+  else offer_few(packet, bodies);
+  decide(packet, count);
+}
+
+void RayCaster::offer_few(RayPacket& packet, const BodiesInReach& bodies) const {
+  for (std::size_t i = 0; i < bodies.solid_count; ++i) {
+    const std::size_t solid = bodies.solids[i], cylinders = solids_.cylinders.size();
+    if (solid < cylinders) packet.offer(solids_.cylinders[solid]);
+    else packet.offer(solids_.spheres[solid - cylinders]);
+  }
+}
+
+void RayCaster::offer_by_tree(RayPacket& packet, int count) const {
   alignas(32) int valid[kLanes];
   RTCRayHit8 rays{};
   for (int lane = 0; lane < kLanes; ++lane) {
     const Vec3 direction = packet.direction(lane);
-    valid[lane] = lane < static_cast<int>(directions.size()) ? -1 : 0;
+    valid[lane] = lane < count ? -1 : 0;
     rays.ray.dir_x[lane] = static_cast<float>(direction.x());
     rays.ray.dir_y[lane] = static_cast<float>(direction.y());
     rays.ray.dir_z[lane] = static_cast<float>(direction.z());
     rays.ray.tnear[lane] = search_start(depth_min_);
-    rays.ray.tfar[lane] = search_end(packet, lane);
+    rays.ray.tfar[lane] = search_end(depth_max_);
     rays.ray.mask[lane] = ~0U;
     rays.ray.id[lane] = static_cast<unsigned>(lane);
     rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
   }
+  packet.limit(rays.ray.tfar);
   PacketQuery query(packet);
   embree::intersect(valid, scene_.get(), query, rays);
-  for (std::size_t lane = 0; lane < directions.size(); ++lane) hits[lane] = decide(packet, static_cast<int>(lane));
 }
 
-Hit RayCaster::decide(const RayPacket& packet, int lane) const {
-  const Hit hit = packet.is_special(lane) ? first_boundary_hit(packet.direction(lane)) : packet.first(lane);
-  return hit.depth <= depth_max_ ? hit : Hit{};
+void RayCaster::decide(RayPacket& packet, int count) const {
+  if (packet.has_special())
+    for (int lane = 0; lane < count; ++lane)
+      if (packet.is_special(lane)) packet.set_first(lane, first_boundary_hit(packet.direction(lane)));
+  packet.forget_beyond(depth_max_);
 }
 
 Hit RayCaster::first_boundary_hit(const Vec3& direction) const {

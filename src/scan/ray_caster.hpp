@@ -27,25 +27,29 @@ class RayCaster {
   RayCaster(const RayCaster&) = delete;  // Embree holds pointers to the solids
   RayCaster& operator=(const RayCaster&) = delete;
 
+  const SceneSolids& solids() const { return solids_; }
+  double depth_min() const { return depth_min_; }  ///< metres, less the rounding that is allowed for
+
   /// The first surface of a tube or of the bin along the ray at depth depth_min or beyond. Where the ray
   /// begins inside a solid that is the surface through which it leaves (or enters another tube); faces
   /// between the solids of one body are no surface. Through a hollow tube's open end the ray goes on within its bore.
   /// `direction`: Camera::direction_in_world.
   Hit first_hit(const Vec3& direction) const;
-  /// The first hits of up to kLanes rays, faster for rays side by side than one at a time.
-  void first_hits(std::span<const Vec3> directions, std::span<Hit> hits) const;
+  /// The first hits of a new packet's first `count` rays, which meet no other `bodies` than these: of each lane,
+  /// in the packet itself, infinitely deep where nothing is hit. Faster for rays side by side than one at a time.
+  void find_first_hits(RayPacket& packet, int count, const BodiesInReach& bodies) const;
 
  private:
-  float search_end(const RayPacket& packet, int lane) const;
+  void offer_few(RayPacket& packet, const BodiesInReach& bodies) const;
+  void offer_by_tree(RayPacket& packet, int count) const;
   /// What Embree's search has left undecided.
-  Hit decide(const RayPacket& packet, int lane) const;
+  void decide(RayPacket& packet, int count) const;
   /// As first_hit, looking at every boundary of every body.
   Hit first_boundary_hit(const Vec3& direction) const;
 
   SceneSolids solids_;
   double depth_min_;
   double depth_max_;
-  embree::Device device_;
   embree::Scene scene_;
 };
 

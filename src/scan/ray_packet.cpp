@@ -1,7 +1,5 @@
 #include "scan/ray_packet.hpp"
 
-#include <algorithm>
-
 #include "tubebin/core/wide.hpp"
 
 namespace tubebin {
@@ -13,7 +11,25 @@ RayPacket::RayPacket(std::span<const Vec3> directions, double depth_min) : depth
     block.directions.x[lane % kBlockLanes] = direction.x();
     block.directions.y[lane % kBlockLanes] = direction.y();
     block.directions.z[lane % kBlockLanes] = direction.z();
-    block.depth[lane % kBlockLanes] = std::numeric_limits<double>::infinity();
+  }
+}
+
+RayPacket::RayPacket(const Camera& camera, int column, int row, double depth_min) : depth_min_(depth_min) {
+  aim(camera, column, row);
+}
+
+/// As Camera::direction_in_world.
+TUBEBIN_WIDE void RayPacket::aim(const Camera& camera, int column, int row) {
+  const Eigen::Matrix3d axes = camera.world_from_scanner().linear();
+  const double y = (row + 0.5 - camera.height() / 2.0) / camera.focal_length();
+  Lanes x;
+  for (int lane = 0; lane < kBlockLanes; ++lane) x[lane] = column + lane + 0.5;
+  for (Block& block : blocks_) {
+    const Lanes across = (x - camera.width() / 2.0) / camera.focal_length();
+    block.directions.x = axes(0, 0) * across + axes(0, 1) * y + axes(0, 2);
+    block.directions.y = axes(1, 0) * across + axes(1, 1) * y + axes(1, 2);
+    block.directions.z = axes(2, 0) * across + axes(2, 1) * y + axes(2, 2);
+    x += kBlockLanes;
   }
 }
 
@@ -43,13 +59,64 @@ template <typename Solid>
   if (solid.bore_radius > 0.0) check_bore(solid);
 }
 
-TUBEBIN_WIDE void RayPacket::offer_bin(const std::vector<Box>& bin) {
+TUBEBIN_WIDE void RayPacket::limit(std::span<float, kLanes> search_ends) const {
+  std::array<float, kLanes> own;
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    for (std::size_t lane = 0; lane < kBlockLanes; ++lane)
+      own[i * kBlockLanes + lane] = search_end(blocks_[i].depth[lane]);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) search_ends[lane] = std::min(search_ends[lane], own[lane]);
+}
+
+void RayPacket::set_first(int lane, const Hit& hit) {
+  Block& of = blocks_[static_cast<std::size_t>(lane / kBlockLanes)];
+  of.depth[lane % kBlockLanes] = hit.depth;
+  of.label[lane % kBlockLanes] = static_cast<std::int64_t>(hit.label);
+}
+
+TUBEBIN_WIDE void RayPacket::forget_beyond(double depth_max) {
+  for (Block& block : blocks_) {
+    const LaneFlags near = block.depth <= depth_max;
+    block.depth = near ? block.depth : Lanes{} + std::numeric_limits<double>::infinity();
+    block.label &= near;
+  }
+}
+
+TUBEBIN_WIDE void RayPacket::get_first_points(const Vec3& origin, std::span<Point> points,
+                                              std::span<Label> labels) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t begin = 0; begin < points.size(); begin += kBlockLanes) {
+    const Block& of = blocks_[begin / kBlockLanes];
+    const LaneFlags found = of.depth < kInfinity;
+    const Lanes none = Lanes{} + kNoNumber;
+    const Lanes x = found ? origin.x() + of.depth * of.directions.x : none;
+    const Lanes y = found ? origin.y() + of.depth * of.directions.y : none;
+    const Lanes z = found ? origin.z() + of.depth * of.directions.z : none;
+    const LaneFlags label = found & of.label;
+    const std::size_t count = std::min<std::size_t>(kBlockLanes, points.size() - begin);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      points[begin + lane] = {static_cast<float>(x[lane]), static_cast<float>(y[lane]), static_cast<float>(z[lane])};
+      labels[begin + lane] = static_cast<Label>(label[lane]);
+    }
+  }
+}
+
+bool RayPacket::has_special() const {
+  LaneFlags special = {};
+  for (const Block& block : blocks_) special |= block.begins_inside | block.enters_bore;
+  bool any = false;
+  for (int lane = 0; lane < kBlockLanes; ++lane) any |= special[lane] != 0;
+  return any;
+}
+
+TUBEBIN_WIDE void RayPacket::offer_bin(const std::vector<Box>& bin, BoxFlags boxes) {
   for (Block& block : blocks_) {
     DirectionOf<Lanes> inverse;
     invert(block.directions, inverse);
-    for (const Box& box : bin) {
+    for (std::size_t i = 0; i < bin.size(); ++i) {
+      if (!(boxes & box_flag(i))) continue;
       IntervalOf<Lanes> inside;
-      intersect(box, inverse, inside);
+      intersect(bin[i], inverse, inside);
       block.take(inside, 0, depth_min_);
     }
   }

@@ -1,12 +1,15 @@
 // Several rays from the scanner at once, and the first solid that each of them has met so far.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 
 #include "scan/exact_shapes.hpp"
+#include "scan/packet_bodies.hpp"
 #include "scan/scene_solids.hpp"
+#include "tubebin/scene/camera.hpp"
 
 namespace tubebin {
 
@@ -24,18 +27,31 @@ struct Hit {
   bool found() const { return depth < std::numeric_limits<double>::infinity(); }
 };
 
+/// The single precision bound just beyond a depth (metres), so that what is equally deep is still looked at.
+inline float search_end(double depth) { return static_cast<float>(std::max(depth, 0.0)) * (1.0F + 0x1p-22F) + 1e-9F; }
+
 class RayPacket {
  public:
   /// At most kLanes directions; the last fills the lanes that are left. Depths below depth_min don't count.
   RayPacket(std::span<const Vec3> directions, double depth_min);
+  /// Through the pixel and those to its right.
+  RayPacket(const Camera& camera, int column, int row, double depth_min);
 
   /// Each lane takes the solid's first point if it is nearer than what it has. Equal depths go to the lower label, so
   /// that the result does not depend on the order of the solids.
-  void offer_bin(const std::vector<Box>& bin);
+  void offer_bin(const std::vector<Box>& bin, BoxFlags boxes = kAllBoxes);
   void offer(const Labelled<SolidCylinder>& cylinder);
   void offer(const Labelled<SolidSphere>& sphere);
 
+  /// Lowers the lanes' bounds to what is left to search.
+  void limit(std::span<float, kLanes> search_ends) const;
+  void set_first(int lane, const Hit& hit);
+  /// Lanes that have nothing at depth_max or nearer have nothing.
+  void forget_beyond(double depth_max);
+
   Vec3 direction(int lane) const;
+  /// Of the first lanes: origin + depth * direction and the label; no number and 0 where nothing is met.
+  void get_first_points(const Vec3& origin, std::span<Point> points, std::span<Label> labels) const;
   double depth(int lane) const { return block(lane).depth[lane % kBlockLanes]; }
   Hit first(int lane) const { return {depth(lane), static_cast<Label>(block(lane).label[lane % kBlockLanes])}; }
   /// Whether the first boundary is to be looked for otherwise: the ray begins inside a solid, or enters a hollow tube
@@ -43,11 +59,13 @@ class RayPacket {
   bool is_special(int lane) const {
     return (block(lane).begins_inside[lane % kBlockLanes] | block(lane).enters_bore[lane % kBlockLanes]) != 0;
   }
+  /// Whether a lane is.
+  bool has_special() const;
 
  private:
   struct Block {
     DirectionOf<Lanes> directions;
-    Lanes depth;
+    Lanes depth = Lanes{} + std::numeric_limits<double>::infinity();
     LaneFlags label = {};
     LaneFlags begins_inside = {};
     LaneFlags enters_bore = {};  ///< at `depth`
@@ -56,6 +74,7 @@ class RayPacket {
   };
 
   const Block& block(int lane) const { return blocks_[static_cast<std::size_t>(lane / kBlockLanes)]; }
+  void aim(const Camera& camera, int column, int row);
   template <typename Solid>
   void offer_solid(const Labelled<Solid>& solid);
   template <typename Solid>

@@ -1,7 +1,7 @@
 #include "tubebin/scan/scanner.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -17,90 +17,86 @@
 namespace tubebin {
 namespace {
 
+const Point kNoPoint = Point::Constant(std::numeric_limits<float>::quiet_NaN());
+
 PixelWindow whole_image(const Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
 
-/// A pixel's point in world and its label.
-struct LabelledPoint {
-  Point point;
-  Label label = 0;
-};
-/// Fills points[i] for the pixel (column + i, row); nothing where the pixel has no point.
-using PointsOfRow = std::function<void(int column, int row, std::span<std::optional<LabelledPoint>> points)>;
+/// Fills the points and labels of the pixels from (column, row) on to the right: no number and 0 where a pixel has no
+/// point.
+using PointsOfRow = std::function<void(int column, int row, std::span<Point> points, std::span<Label> labels)>;
 
-PointsOfRow exact_points(const RayCaster& caster, const Camera& camera) {
-  return [&](int column, int row, std::span<std::optional<LabelledPoint>> points) {
+PointsOfRow exact_points(const RayCaster& caster, const Camera& camera, const PacketBodies& bodies) {
+  return [&](int column, int row, std::span<Point> points, std::span<Label> labels) {
     const Vec3 scanner_in_world = camera.world_from_scanner().translation();
-    std::array<Vec3, kLanes> directions;
-    std::array<Hit, kLanes> hits;
     for (std::size_t begin = 0; begin < points.size(); begin += kLanes) {
       const std::size_t count = std::min<std::size_t>(kLanes, points.size() - begin);
-      for (std::size_t i = 0; i < count; ++i)
-        directions[i] = camera.pixel_direction_in_world(column + static_cast<int>(begin + i), row);
-      caster.first_hits({directions.data(), count}, hits);
-      for (std::size_t i = 0; i < count; ++i) {
-        points[begin + i].reset();
-        if (hits[i].found())
-          points[begin + i] = {(scanner_in_world + hits[i].depth * directions[i]).cast<float>(), hits[i].label};
-      }
+      const int first_column = column + static_cast<int>(begin);
+      RayPacket packet(camera, first_column, row, caster.depth_min());
+      caster.find_first_hits(packet, static_cast<int>(count), bodies.at(first_column, row));
+      packet.get_first_points(scanner_in_world, points.subspan(begin, count), labels.subspan(begin, count));
     }
   };
 }
 
 PointsOfRow measured_points(const Measurement& measurement, const Reconstruction& reconstruction) {
-  return [&](int column, int row, std::span<std::optional<LabelledPoint>> points) {
+  return [&](int column, int row, std::span<Point> points, std::span<Label> labels) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const int at = column + static_cast<int>(i);
       const std::optional<Hit> hit = measurement.measure(at, row);
-      points[i].reset();
-      if (hit) points[i] = {reconstruction.point_in_world(at, row, hit->depth).cast<float>(), hit->label};
+      points[i] = hit ? Point(reconstruction.point_in_world(at, row, hit->depth).cast<float>()) : kNoPoint;
+      labels[i] = hit ? hit->label : 0;
     }
   };
-}
-
-/// Calls on_point(column, row, labelled point) for every pixel of the window that has one, row by row.
-template <typename OnPoint>
-void for_each_point(const PointsOfRow& points_of_row, const PixelWindow& window, const OnPoint& on_point) {
-  std::vector<std::optional<LabelledPoint>> points(static_cast<std::size_t>(window.width));
-  for (int row = window.y; row < window.y + window.height; ++row) {
-    points_of_row(window.x, row, points);
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (points[i]) on_point(window.x + static_cast<int>(i), row, *points[i]);
-  }
 }
 
 void resize_empty(Cloud& cloud, const PixelWindow& window) {
   const auto pixels = static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
   cloud.width = static_cast<std::uint32_t>(window.width);
   cloud.height = static_cast<std::uint32_t>(window.height);
-  cloud.points.assign(pixels, Point::Constant(std::numeric_limits<float>::quiet_NaN()));
+  cloud.points.assign(pixels, kNoPoint);
   cloud.colors.assign(pixels, kNullColor);
   cloud.labels.assign(pixels, 0);
+}
+
+/// Neighbours mostly have the same label.
+void count_pixels(std::span<const Label> labels, std::vector<std::size_t>& tube_pixels) {
+  for (auto run = labels.begin(); run != labels.end();) {
+    const auto end = std::find_if(run, labels.end(), [run](Label label) { return label != *run; });
+    if (*run > 0) tube_pixels[*run - 1] += static_cast<std::size_t>(end - run);
+    run = end;
+  }
 }
 
 /// One point a pixel of `scan.window`; what lies outside `seen` shows neither bin nor tubes.
 void scan_organized(const PointsOfRow& points_of_row, const PixelWindow& seen, const std::vector<Color>& colors,
                     Scan& scan) {
   resize_empty(scan.cloud, scan.window);
-  for_each_point(points_of_row, seen, [&](int column, int row, const LabelledPoint& seen_point) {
-    const auto index = static_cast<std::size_t>(row - scan.window.y) * scan.cloud.width +
-                       static_cast<std::size_t>(column - scan.window.x);
-    const Label label = seen_point.label;
-    scan.cloud.points[index] = seen_point.point;
-    scan.cloud.colors[index] = colors[label];
-    scan.cloud.labels[index] = label;
-    if (label > 0) ++scan.tube_pixels[label - 1];
-  });
+  const auto width = static_cast<std::size_t>(seen.width);
+  for (int row = seen.y; row < seen.y + seen.height; ++row) {
+    const auto begin = static_cast<std::size_t>(row - scan.window.y) * scan.cloud.width +
+                       static_cast<std::size_t>(seen.x - scan.window.x);
+    const std::span<Point> points = std::span(scan.cloud.points).subspan(begin, width);
+    const std::span<Label> labels = std::span(scan.cloud.labels).subspan(begin, width);
+    points_of_row(seen.x, row, points, labels);
+    count_pixels(labels, scan.tube_pixels);
+    for (std::size_t i = 0; i < width; ++i)
+      if (!std::isnan(points[i].x())) scan.cloud.colors[begin + i] = colors[labels[i]];
+  }
 }
 
 void scan_tubes(const PointsOfRow& points_of_row, const std::vector<Color>& colors, Scan& scan) {
-  for_each_point(points_of_row, scan.window, [&](int, int, const LabelledPoint& seen_point) {
-    const Label label = seen_point.label;
-    if (label == 0) return;
-    scan.cloud.points.push_back(seen_point.point);
-    scan.cloud.colors.push_back(colors[label]);
-    scan.cloud.labels.push_back(label);
-    ++scan.tube_pixels[label - 1];
-  });
+  std::vector<Point> points(static_cast<std::size_t>(scan.window.width));
+  std::vector<Label> labels(points.size());
+  for (int row = scan.window.y; row < scan.window.y + scan.window.height; ++row) {
+    points_of_row(scan.window.x, row, points, labels);
+    count_pixels(labels, scan.tube_pixels);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (labels[i] == 0) continue;
+      scan.cloud.points.push_back(points[i]);
+      scan.cloud.colors.push_back(colors[labels[i]]);
+      scan.cloud.labels.push_back(labels[i]);
+    }
+  }
   scan.cloud.width = static_cast<std::uint32_t>(scan.cloud.size());
 }
 
@@ -130,7 +126,8 @@ Scan scan(const Scene& scene, std::uint64_t seed) {
     const Reconstruction reconstruction(scanner);
     scan_region(measured_points(measurement, reconstruction), seen, scanner.region, scan);
   } else {
-    scan_region(exact_points(caster, camera), seen, scanner.region, scan);
+    const PacketBodies bodies(caster.solids(), camera, seen, caster.depth_min());
+    scan_region(exact_points(caster, camera, bodies), seen, scanner.region, scan);
   }
   return scan;
 }

@@ -57,6 +57,30 @@ TEST(RayPacket, EveryLaneTakesWhatItsRayMeetsFirst) {
   EXPECT_GT(tube_hits, 1000);
 }
 
+TEST(RayPacket, LooksThroughPixelsAsTheCameraDoes) {
+  Scanner scanner;
+  scanner.position = {0.3, -0.2, 1.7};
+  scanner.rotation_deg = {12.0, -7.0, 31.0};
+  const Camera camera(scanner);
+  const RayPacket packet(camera, 701, 333, 0.1);
+  for (int lane = 0; lane < kLanes; ++lane)
+    EXPECT_EQ(packet.direction(lane), camera.pixel_direction_in_world(701 + lane, 333)) << lane;
+}
+
+TEST(RayPacket, GivesThePointsOfTheFirstLanes) {
+  const std::vector<Vec3> directions = {{0, 0, 1}, {0.5, 0, 1}, {0.01, 0.02, 1}};
+  RayPacket packet(directions, 0.1);
+  packet.offer(Labelled<SolidSphere>{SolidSphere({0, 0, 1}, 0.25), 7});
+  std::vector<Point> points(3);
+  std::vector<Label> labels(3, 99);
+  const Vec3 origin(1, 2, 3);
+  packet.get_first_points(origin, points, labels);
+  EXPECT_EQ(points[0], Point(1, 2, 3.75));
+  EXPECT_TRUE(points[1].array().isNaN().all());
+  EXPECT_EQ(points[2], Point((origin + packet.depth(2) * directions[2]).cast<float>()));
+  EXPECT_EQ(labels, (std::vector<Label>{7, 0, 7}));
+}
+
 TEST(RayPacket, MarksLanesThatBeginInsideOrEnterABore) {
   const std::vector<Vec3> directions = {{0, 0, 1}, {0.6, 0, 1}, {0.012, 0, 1}};
   RayPacket inside(directions, 0.1);

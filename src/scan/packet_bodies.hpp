@@ -1,0 +1,47 @@
+// Which bodies the rays of a packet may meet.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "scan/scene_solids.hpp"
+#include "tubebin/scene/camera.hpp"
+
+namespace tubebin {
+
+/// A bit for each of the bin's boxes.
+using BoxFlags = std::uint32_t;
+constexpr BoxFlags box_flag(std::size_t box) { return BoxFlags{1} << box; }
+constexpr BoxFlags kAllBoxes = ~BoxFlags{0};
+
+/// The bodies that a packet may meet. Of the tubes' solids it names a few; where there are more, a search tree is the
+/// shorter way.
+struct BodiesInReach {
+  static constexpr std::size_t kFew = 6;
+
+  BoxFlags boxes = 0;
+  std::uint32_t solid_count = 0;
+  std::array<std::uint32_t, kFew> solids{};  ///< the first of them; cylinders are counted first, then spheres
+};
+
+/// Packets lie side by side in the rows of a window, the first at its left side.
+class PacketBodies {
+ public:
+  /// Bodies that are seen at depth_min (metres) or beyond count. At most 32 boxes.
+  PacketBodies(const SceneSolids& solids, const Camera& camera, const PixelWindow& window, double depth_min);
+
+  /// Of the packet that begins at a pixel of the window. Its rays meet no others.
+  const BodiesInReach& at(int column, int row) const { return packets_[index(column, row)]; }
+
+ private:
+  std::size_t index(int column, int row) const;
+  template <typename Add>
+  void for_each_packet(int row, int begin, int end, const Add& add);
+
+  PixelWindow window_;
+  std::size_t packets_in_row_;
+  std::vector<BodiesInReach> packets_;
+};
+
+}  // namespace tubebin
