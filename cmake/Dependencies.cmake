@@ -14,7 +14,7 @@ add_library(tubebin::ode ALIAS PkgConfig::ODE)
 
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 # Previews alone need OSMesa (gone from Mesa 25.1); without it everything else works.
-pkg_check_modules(OSMESA IMPORTED_TARGET osmesa)
+pkg_check_modules(OSMESA osmesa)
 
 # Embree 4 (Ubuntu 24.04) or 3 (Debian 12); src/scan/embree.hpp is the one place that tells them apart.
 find_package(embree 4 QUIET)

@@ -37,7 +37,8 @@ void check_version(const DatasetConfig& config, const KeyPlaces& places) {
 
 void check_preview(const DatasetConfig& config, const KeyPlaces& places) {
   if (config.output.preview && !can_render())
-    places.fail("output.preview", "'true' is not possible: this build cannot draw, since OSMesa was missing");
+    places.fail("output.preview",
+                "'true' is not possible: OSMesa, which draws, is missing, or was when this was built");
 }
 
 int parse_count(const std::string& text, const std::string& whole) {

@@ -3,33 +3,38 @@
 #include <stdexcept>
 
 #ifdef TUBEBIN_HAVE_OSMESA
+#include "render/opengl/functions.hpp"
 #include "render/opengl/views.hpp"
 #endif
 
 namespace tubebin {
 
-#ifdef TUBEBIN_HAVE_OSMESA
-
-bool can_render() { return true; }
-
-Image render_preview(const Scene& scene, int width, int height) { return draw_lit_view(scene, width, height); }
-
-Image render_labels(const Scene& scene, const PixelWindow& window) {
-  if (window.width == 0 || window.height == 0) return {};
-  return draw_label_view(scene, window);
-}
-
-#else
-
 namespace {
 
 [[noreturn]] void refuse() {
   throw std::runtime_error(
-      "this build can't draw previews: OSMesa was missing when it was configured "
+      "previews can't be drawn: OSMesa is missing, or was when this was configured "
       "(Debian and Ubuntu: apt install libosmesa6-dev, then configure and build anew)");
 }
 
 }  // namespace
+
+#ifdef TUBEBIN_HAVE_OSMESA
+
+bool can_render() { return load_opengl(); }
+
+Image render_preview(const Scene& scene, int width, int height) {
+  if (!can_render()) refuse();
+  return draw_lit_view(scene, width, height);
+}
+
+Image render_labels(const Scene& scene, const PixelWindow& window) {
+  if (window.width == 0 || window.height == 0) return {};
+  if (!can_render()) refuse();
+  return draw_label_view(scene, window);
+}
+
+#else
 
 bool can_render() { return false; }
 

@@ -23,7 +23,7 @@ struct Image {
   }
 };
 
-/// Whether this build can draw (OSMesa was found when it was configured).
+/// Whether there is OSMesa to draw with: it was found when this was configured, and can be loaded, which this does.
 bool can_render();
 
 /// The bin and its tubes in their ground-truth colours, lit, from obliquely above (as the paper's Figures 3

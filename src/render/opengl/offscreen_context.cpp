@@ -1,6 +1,5 @@
 #include "render/opengl/offscreen_context.hpp"
 
-#include <GL/osmesa.h>
 #include <fmt/format.h>
 
 #include <stdexcept>

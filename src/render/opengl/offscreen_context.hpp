@@ -1,20 +1,17 @@
-// An OpenGL context that draws into memory. The only place that knows OSMesa.
+// An OpenGL context that draws into memory.
 #pragma once
-
-#define GL_GLEXT_PROTOTYPES
-#include <GL/gl.h>
-#include <GL/glext.h>
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "render/opengl/functions.hpp"
 #include "tubebin/render/preview.hpp"
 
 namespace tubebin {
 
 /// The current context of this thread from construction on; one lives at a time. Throws std::runtime_error
-/// where there can be none of that size.
+/// where there can be none of that size. Needs load_opengl().
 class OffscreenContext {
  public:
   OffscreenContext(int width, int height);
