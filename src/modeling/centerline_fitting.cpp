@@ -201,15 +201,15 @@ std::size_t vote_stride(std::size_t points, double radius, double spacing) {
   return static_cast<std::size_t>(std::max(stride, 1.0));
 }
 
-/// Where few points, or those of a flat end, lead an end aside, grow_end may turn twice in what becomes one corner: 50
-/// degrees within two radii are no tube, nor is a right angle anywhere.
+/// Where few points, or those of a flat end, lead an end aside, grow_end may turn twice in what becomes one corner: a
+/// sharp turn within two radii is no tube, nor is a right angle anywhere.
 void drop_sharp_ends(std::vector<Vec3>& nodes, double radius) {
   for (int end = 0; end < 2; ++end) {
     std::reverse(nodes.begin(), nodes.end());
     while (nodes.size() > 2) {
       const Vec3 last = nodes.back() - nodes[nodes.size() - 2];
       const Vec3 before = nodes[nodes.size() - 2] - nodes[nodes.size() - 3];
-      if (last.normalized().dot(before.normalized()) > (last.norm() > 2.0 * radius ? 0.0 : 0.64)) break;
+      if (last.normalized().dot(before.normalized()) > (last.norm() > 2.0 * radius ? 0.0 : kSharpTurn)) break;
       nodes.pop_back();
     }
   }

@@ -209,7 +209,7 @@ void grow_end(std::vector<Vec3>& nodes, const FilteredCloud& cloud, std::span<co
     const double sine = forward.cross((viewpoint - nodes.back()).normalized()).norm();
     const double row = spacing / std::max(sine, 3.0 * spacing / radius);
     const Support sure(next.supporting(close, 0.15 * radius, 0.87), row);
-    const bool sharp = forward.dot(direction) < 0.64;  // 50 degrees within a radius: no tube, but another one
+    const bool sharp = forward.dot(direction) < kSharpTurn;  // within a radius: no tube, but another one
     if (!sharp && !meets_itself(nodes, nodes.back() + sure.reach * forward, radius) &&
         sure.enough(0.15, radius, spacing, row)) {
       nodes.push_back(nodes.back() + sure.reach * forward);

@@ -6,7 +6,6 @@
 
 #include "modeling/built_scene.hpp"
 #include "tubebin/core/random.hpp"
-#include "tubebin/modeling/centerline_segmentation.hpp"
 
 namespace tubebin::testing {
 namespace {
@@ -51,17 +50,6 @@ TEST(FlatEnds, AreNotSeenInASide) {
     EXPECT_TRUE(axis_of_flat_end(surface, kRadius).empty()) << depth;
     std::erase_if(surface, [](const SurfacePoint& p) { return std::abs(p.position.y()) > 0.3 * kRadius; });
     EXPECT_TRUE(axis_of_flat_end(surface, kRadius).empty()) << depth;  // all normals within 20 degrees
-  }
-}
-
-TEST(Segmentation, NeedsAsManyPointsAsAnAxisHasUnknowns) {
-  for (const std::size_t count : {3u, 4u}) {
-    FilteredCloud cloud{.source = {}, .points = {}, .normals = {}, .spacing = 0.003};
-    for (std::size_t i = 0; i < count; ++i) {
-      cloud.points.emplace_back(0.001f * static_cast<float>(i), 0.0f, 0.05f);
-      cloud.normals.push_back(Point::UnitZ());
-    }
-    EXPECT_EQ(segment_by_votes(cloud, kRadius).size(), count < 4 ? 0u : 1u);
   }
 }
 

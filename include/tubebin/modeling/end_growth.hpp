@@ -9,6 +9,9 @@
 
 namespace tubebin {
 
+/// Cosine of 50 degrees: what turns by more within a radius or two is no tube.
+constexpr double kSharpTurn = 0.64;
+
 /// Appends nodes, about a radius apart, as far as the points show that the tube goes on from its last node without a
 /// gap, and ends the last cylinder where they end. A point shows it if it lies on the next cylinder's side and its
 /// normal stands across it; a flat end's do not.
