@@ -52,6 +52,7 @@ def run(program: Program, arguments: argparse.Namespace, seed: int, output: Path
     """Seconds of the whole command. Exit code 3 is some scenes not done: they are counted from the output."""
     scenes = ["--tubes", str(arguments.tubes), "--cases", str(arguments.cases), "--seed", str(seed)]
     command = [*program.command, *scenes, "--jobs", str(arguments.jobs), "--output", str(output)]
+    os.sync()  # nobody waits for what another has written
     start = time.perf_counter()
     result = subprocess.run([*command, *more], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     seconds = time.perf_counter() - start
