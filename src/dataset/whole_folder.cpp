@@ -30,6 +30,19 @@ fs::path unfinished_path(const fs::path& scene) {
          fmt::format(".{}.{}-{}{}", scene.filename().string(), process_name(), counter++, kUnfinishedSuffix);
 }
 
+/// Removes `path`, a folder of the scene's or a file, at once for everybody else: it is renamed before it is emptied. So
+/// who still writes into it fails, and gives no final name to a folder some of whose files are gone.
+void remove_at_once(const fs::path& path, const fs::path& scene) {
+  const fs::path removed = unfinished_path(scene);
+  std::error_code error;
+  fs::rename(path, removed, error);
+  if (error == std::errc::no_such_file_or_directory) return;  // another was quicker
+  if (!error) fs::remove_all(removed, error);
+  // A file that was just being made in it, or that is still open on NFS, is left to who clears next.
+  if (error && error != std::errc::directory_not_empty && error != std::errc::no_such_file_or_directory)
+    throw fs::filesystem_error("remove", path, error);
+}
+
 void sync_folder(const fs::path& path) {
   const FileDescriptor folder(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   // Some file systems can't sync folders; there a rename is as safe as they make it.
@@ -77,10 +90,7 @@ class UnfinishedFolder {
     if (error != std::errc::directory_not_empty && error != std::errc::file_exists &&
         error != std::errc::not_a_directory)
       throw fs::filesystem_error("rename", path_, scene_, error);
-    const fs::path old = unfinished_path(scene_);
-    fs::rename(scene_, old, error);
-    if (!error) fs::remove_all(old);
-    else if (error != std::errc::no_such_file_or_directory) throw fs::filesystem_error("rename", scene_, old, error);
+    remove_at_once(scene_, scene_);
     return false;
   }
 
@@ -193,10 +203,14 @@ bool is_unfinished_folder(const std::string& path) {
 }
 
 void remove_unfinished_folders(const std::string& folder, const std::set<std::string>& of) try {
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (is_unfinished_folder(name) && (of.empty() || of.contains(name.substr(1, name.find('.', 1) - 1))))
-      fs::remove_all(entry.path());
+  // Listed first, since removing takes new names.
+  std::vector<fs::path> unfinished;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (is_unfinished_folder(entry.path().string())) unfinished.push_back(entry.path());
+  for (const fs::path& path : unfinished) {
+    const std::string name = path.filename().string();
+    const std::string scene = name.substr(1, name.find('.', 1) - 1);
+    if (of.empty() || of.contains(scene)) remove_at_once(path, path.parent_path() / scene);
   }
 } catch (const fs::filesystem_error& error) {
   throw_io_error("{}: cannot be cleared of what is unfinished: {}", folder, error.code().message());
