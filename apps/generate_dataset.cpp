@@ -161,7 +161,8 @@ int generate(const Arguments& arguments) {
     return make_scenes(folder, scenes, {}, arguments);
   }
   if (!arguments.quiet) print_part(choice, scenes, config);
-  DatasetFolder folder(arguments.output, config, choice.shard);
+  DatasetFolder folder(arguments.output, config, choice.shard,
+                       arguments.pack ? DatasetFolder::Part::packed : DatasetFolder::Part::loose);
   return make_scenes(folder, scenes, choice.shard, arguments);
 }
 

@@ -75,12 +75,13 @@ DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& con
   if (!manifest_.damaged_lines().empty()) manifest_.rewrite_without({});  // their scenes are made anew
 }
 
-DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& config, const Shard& shard)
+DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& config, const Shard& shard, Part part)
     : folder_(make_folder(folder)),
       part_(list_scenes(config, shard)),
       lock_(folder_, FolderLock::Kind::part),
       config_(settle_config(folder_, config)),
       store_(folder_, config_.output),
+      pack_lock_(part == Part::packed ? std::make_unique<FolderLock>(folder_, shard) : nullptr),
       manifest_(folder_, shard, *part_) {
   remove_unfinished();
 }

@@ -8,9 +8,11 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
 #include <thread>
 
 #include "tubebin/core/error.hpp"
+#include "tubebin/dataset/manifest.hpp"
 
 namespace tubebin {
 namespace {
@@ -42,23 +44,36 @@ void write_holder(int descriptor) {
   if (ftruncate(descriptor, 0) == 0 && pwrite(descriptor, text.data(), text.size(), 0) < 0) return;
 }
 
+/// A descriptor of the lock file, made if it isn't there.
+int open_lock_file(const std::string& path) {
+  const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) throw_io_error("{}: cannot be written: {}", path, std::strerror(errno));
+  return descriptor;
+}
+
 }  // namespace
 
 FolderLock::FolderLock(const std::string& folder, Kind kind) {
   const std::string path = folder + "/.lock";
-  const bool exclusive = kind == Kind::exclusive;
-  const bool reads = kind == Kind::shared;
-  descriptor_ = open(path.c_str(), reads ? O_RDONLY | O_CLOEXEC : O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) {
-    if (reads) return;  // nobody ever locked it
-    throw_io_error("{}: cannot be written: {}", path, std::strerror(errno));
-  }
+  descriptor_ = kind == Kind::shared ? open(path.c_str(), O_RDONLY | O_CLOEXEC) : open_lock_file(path);
+  if (descriptor_ < 0) return;  // nobody ever locked it
   if (!try_to_lock(descriptor_, kind)) {
     const std::string other = holder(descriptor_);
     close(descriptor_);
     throw_config_error("{}: {} is writing to this folder; wait for its end or choose another folder", folder, other);
   }
-  if (exclusive) write_holder(descriptor_);
+  if (kind == Kind::exclusive) write_holder(descriptor_);
+}
+
+FolderLock::FolderLock(const std::string& folder, const Shard& packed_part) {
+  std::filesystem::create_directories(parts_folder(folder));
+  descriptor_ = open_lock_file(fmt::format("{}/{}.lock", parts_folder(folder), packed_part.name()));
+  if (!try_to_lock(descriptor_, Kind::exclusive)) {
+    const std::string other = holder(descriptor_);
+    close(descriptor_);
+    throw_io_error("{}: {} is packing part {}, and two can't; wait for its end", folder, other, packed_part.name());
+  }
+  write_holder(descriptor_);
 }
 
 FolderLock::~FolderLock() {

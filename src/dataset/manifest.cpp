@@ -32,8 +32,6 @@ DropFigures physics_from(const Json& json) {
           .largest_drift = json.at("largest_drift")};
 }
 
-constexpr const char* kParts = "/manifest.parts";
-
 /// Lines that programs append begin with the id, which saves parsing those of other scenes. "" where one doesn't.
 std::string id_of(const std::string& line) {
   constexpr std::string_view start = R"({"id":")";
@@ -44,7 +42,7 @@ std::string id_of(const std::string& line) {
 std::vector<std::string> list_parts(const std::string& folder) {
   std::vector<std::string> parts;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder + kParts, error))
+  for (const auto& entry : std::filesystem::directory_iterator(parts_folder(folder), error))
     if (entry.path().extension() == ".jsonl") parts.push_back(entry.path().string());
   std::sort(parts.begin(), parts.end());
   return parts;
@@ -52,9 +50,9 @@ std::vector<std::string> list_parts(const std::string& folder) {
 
 /// A new file that no other process writes to, whatever its host.
 std::string make_part(const std::string& folder, const std::string& part) {
-  std::filesystem::create_directories(folder + kParts);
+  std::filesystem::create_directories(parts_folder(folder));
   for (int number = 0;; ++number) {
-    std::string path = fmt::format("{}{}/{}.{}-{}.jsonl", folder, kParts, part, process_name(), number);
+    std::string path = fmt::format("{}/{}.{}-{}.jsonl", parts_folder(folder), part, process_name(), number);
     const FileDescriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.get() >= 0) return path;
     if (errno != EEXIST) throw_io_error("{}: cannot be written: {}", path, std::strerror(errno));
@@ -103,6 +101,8 @@ FileRecord record_bytes(std::string_view bytes) {
   const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
   return {.bytes = bytes.size(), .xxh128 = fmt::format("{:016x}{:016x}", hash.high64, hash.low64)};
 }
+
+std::string parts_folder(const std::string& dataset) { return dataset + "/manifest.parts"; }
 
 Manifest::Manifest(const std::string& folder) : folder_(folder), path_(folder + "/manifest.jsonl") {
   complete_bytes_ = read(path_, nullptr);
@@ -172,8 +172,8 @@ void Manifest::rewrite(const std::vector<SceneId>& scenes) {
 void Manifest::replace_all(const std::string& text) {
   write_file_atomically(folder_ + "/manifest.jsonl", text);
   std::error_code error;
-  std::filesystem::remove_all(folder_ + kParts, error);
-  if (error) throw_io_error("{}: cannot be removed: {}", folder_ + kParts, error.message());
+  std::filesystem::remove_all(parts_folder(folder_), error);
+  if (error) throw_io_error("{}: cannot be removed: {}", parts_folder(folder_), error.message());
   path_ = folder_ + "/manifest.jsonl";
   complete_bytes_ = text.size();
   damaged_lines_.clear();

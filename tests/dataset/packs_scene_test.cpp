@@ -1,5 +1,6 @@
 // Parts of a data set whose scenes are packed into tar files.
 #include "dataset/shards.hpp"
+#include "tubebin/dataset/folder_lock.hpp"
 #include "tubebin/scene/dataset_files.hpp"
 
 namespace tubebin::testing {
@@ -55,6 +56,20 @@ TEST_F(Packs, GoOnWhereTheyWereKilled) {
   EXPECT_EQ(read_text(data_ + "/packs/00001-of-00001.tar"),
             read_text(folder_ / "undisturbed/packs/00001-of-00001.tar"));
   EXPECT_TRUE(fs::is_empty(data_ + "/Q1"));
+}
+
+TEST_F(Packs, ArePackedByOneRunAtATime) {
+  const std::vector<std::string> part = {"--shard", "1/2", "--pack"};
+  ASSERT_EQ(generate(data_, {"--shard", "2/2", "--pack"}).exit_code, 0);
+  {
+    const FolderLock other(data_, Shard{.index = 1, .count = 2});
+    const ProgramResult refused = generate(data_, part);
+    EXPECT_EQ(refused.exit_code, 1);  // a scheduler may start it again
+    EXPECT_THAT(refused.error, HasSubstr(fmt::format("process {} is packing part 00001-of-00002", getpid())));
+  }
+  EXPECT_EQ(generate(data_, part).exit_code, 0);
+  EXPECT_EQ(run_generate_dataset({"--merge", data_}).exit_code, 0);
+  EXPECT_EQ(all_files(data_), expected_);
 }
 
 TEST_F(Packs, AreMergedAndCompleted) {

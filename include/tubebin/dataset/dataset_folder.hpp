@@ -2,6 +2,7 @@
 /// may each make a part of one folder.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,8 +26,12 @@ class DatasetFolder {
   /// where it can't be written.
   DatasetFolder(const std::string& folder, const DatasetConfig& config);
 
-  /// The same for a part of the scenes, while others may make the other parts: touches nothing but these scenes.
-  DatasetFolder(const std::string& folder, const DatasetConfig& config, const Shard& shard);
+  /// What becomes of a part's scenes.
+  enum class Part { loose, packed };
+
+  /// The same for a part of the scenes, while others may make the other parts: touches nothing but these scenes. Throws
+  /// IoError where another run packs the same part.
+  DatasetFolder(const std::string& folder, const DatasetConfig& config, const Shard& shard, Part part);
 
   /// Removes what workers were stopped in the middle of, but for a part.
   ~DatasetFolder();
@@ -50,6 +55,7 @@ class DatasetFolder {
   FolderLock lock_;
   DatasetConfig config_;
   SceneStore store_;
+  std::unique_ptr<FolderLock> pack_lock_;
   Manifest manifest_;
 };
 

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "tubebin/dataset/shard.hpp"
+
 namespace tubebin {
 
 /// Holds an advisory lock on `folder`/.lock while it lives. Processes forked from its holder share it, so it is free
@@ -19,6 +21,11 @@ class FolderLock {
   /// Throws ConfigError where another run holds the folder (naming its process) and IoError where the lock file
   /// can't be made.
   explicit FolderLock(const std::string& folder, Kind kind = Kind::exclusive);
+
+  /// Of one part, which two runs can't pack into one tar at once. Throws IoError where another run holds it (as where a
+  /// scheduler has lost sight of that run's host: starting again is right) and where the lock file can't be made.
+  FolderLock(const std::string& folder, const Shard& packed_part);
+
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;

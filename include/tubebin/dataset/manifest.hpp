@@ -44,6 +44,9 @@ ManifestRecord parse_manifest_record(const std::string& line);
 /// Size and hash of a file's bytes.
 FileRecord record_bytes(std::string_view bytes);
 
+/// Where the runs of parts keep files of their own until the parts are joined.
+std::string parts_folder(const std::string& dataset);
+
 class Manifest {
  public:
   /// Reads `folder`/manifest.jsonl and the parts, if they are there. Of two records of one scene the later one counts, but
