@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -82,7 +83,7 @@ class UnfinishedFolder {
   }
 
  private:
-  /// Returns false where another folder got there between moving the old one away and taking its name.
+  /// Returns false where it is to be tried again, since the name was taken or freed meanwhile.
   bool take_name() const {
     std::error_code error;
     fs::rename(path_, scene_, error);
@@ -90,7 +91,12 @@ class UnfinishedFolder {
     if (error != std::errc::directory_not_empty && error != std::errc::file_exists &&
         error != std::errc::not_a_directory)
       throw fs::filesystem_error("rename", path_, scene_, error);
-    remove_at_once(scene_, scene_);
+    if (renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, scene_.c_str(), RENAME_EXCHANGE) == 0) {
+      remove_at_once(path_, scene_);
+      return true;
+    }
+    // Some file systems (NFS) can't exchange names; there the scene is gone for a moment.
+    if (errno != ENOENT) remove_at_once(scene_, scene_);
     return false;
   }
 

@@ -31,7 +31,7 @@ TEST(WholeFolder, IsWholeOrNotThereWhileAnotherClears) {
       }
   });
   int written = 0;
-  for (int round = 0; round < 2000; ++round) {
+  for (int round = 0; round < 500; ++round) {
     try {
       begin_whole_folder(scene, files)();
     } catch (const IoError&) {
