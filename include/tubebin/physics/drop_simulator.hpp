@@ -27,7 +27,7 @@ struct PhysicsOptions {
   double correcting_speed_max = 0.5;    ///< m/s
   double friction_tube = 1.16;          ///< Coulomb coefficient, tube on tube
   double friction_bin = 1.16;           ///< Coulomb coefficient, tube on bin
-  double rolling_resistance = 0.0008;   ///< metres: the torque of a contact that resists rolling, by its force
+  double rolling_resistance = 0.0015;   ///< metres: the torque of a contact that resists rolling, by its force
   double damping_linear = 0.002;        ///< share of the linear velocity lost in a step
   double damping_angular = 0.01;        ///< share of the angular velocity lost in a step
   double speed_max = 2.5;               ///< m/s
