@@ -81,7 +81,8 @@ DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& con
       lock_(folder_, FolderLock::Kind::part),
       config_(settle_config(folder_, config)),
       store_(folder_, config_.output),
-      pack_lock_(part == Part::packed ? std::make_unique<FolderLock>(folder_, shard) : nullptr),
+      pack_lock_(part == Part::packed ? std::make_unique<FolderLock>(make_folder(parts_folder(folder_)), shard)
+                                      : nullptr),
       manifest_(folder_, shard, *part_) {
   remove_unfinished();
 }

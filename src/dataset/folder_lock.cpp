@@ -8,11 +8,10 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <filesystem>
+#include <optional>
 #include <thread>
 
 #include "tubebin/core/error.hpp"
-#include "tubebin/dataset/manifest.hpp"
 
 namespace tubebin {
 namespace {
@@ -51,29 +50,31 @@ int open_lock_file(const std::string& path) {
   return descriptor;
 }
 
+/// Locks the file, or closes it and says who has it.
+std::optional<std::string> lock_or_close(int descriptor, FolderLock::Kind kind) {
+  if (try_to_lock(descriptor, kind)) {
+    if (kind == FolderLock::Kind::exclusive) write_holder(descriptor);
+    return std::nullopt;
+  }
+  const std::string other = holder(descriptor);
+  close(descriptor);
+  return other;
+}
+
 }  // namespace
 
 FolderLock::FolderLock(const std::string& folder, Kind kind) {
   const std::string path = folder + "/.lock";
   descriptor_ = kind == Kind::shared ? open(path.c_str(), O_RDONLY | O_CLOEXEC) : open_lock_file(path);
   if (descriptor_ < 0) return;  // nobody ever locked it
-  if (!try_to_lock(descriptor_, kind)) {
-    const std::string other = holder(descriptor_);
-    close(descriptor_);
-    throw_config_error("{}: {} is writing to this folder; wait for its end or choose another folder", folder, other);
-  }
-  if (kind == Kind::exclusive) write_holder(descriptor_);
+  if (const auto other = lock_or_close(descriptor_, kind))
+    throw_config_error("{}: {} is writing to this folder; wait for its end or choose another folder", folder, *other);
 }
 
-FolderLock::FolderLock(const std::string& folder, const Shard& packed_part) {
-  std::filesystem::create_directories(parts_folder(folder));
-  descriptor_ = open_lock_file(fmt::format("{}/{}.lock", parts_folder(folder), packed_part.name()));
-  if (!try_to_lock(descriptor_, Kind::exclusive)) {
-    const std::string other = holder(descriptor_);
-    close(descriptor_);
-    throw_io_error("{}: {} is packing part {}, and two can't; wait for its end", folder, other, packed_part.name());
-  }
-  write_holder(descriptor_);
+FolderLock::FolderLock(const std::string& folder, const Shard& packed_part)
+    : descriptor_(open_lock_file(fmt::format("{}/{}.lock", folder, packed_part.name()))) {
+  if (const auto other = lock_or_close(descriptor_, Kind::exclusive))
+    throw_io_error("{}: {} is packing part {}, and two can't; wait for its end", folder, *other, packed_part.name());
 }
 
 FolderLock::~FolderLock() {

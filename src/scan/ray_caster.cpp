@@ -84,10 +84,6 @@ const embree::Device& device() {
 
 float search_start(double depth_min) { return std::max(0.0F, static_cast<float>(depth_min) * (1.0F - 0x1p-22F)); }
 
-}  // namespace
-
-namespace {
-
 /// Thinner gaps between the solids of one body, and thinner walls, are rounding (metres).
 constexpr double kSliver = 1e-9;
 
