@@ -22,9 +22,9 @@ class FolderLock {
   /// can't be made.
   explicit FolderLock(const std::string& folder, Kind kind = Kind::exclusive);
 
-  /// Of one part, which two runs can't pack into one tar at once, by a file of its own in `folder`. Throws IoError where
-  /// another run holds it (as where a scheduler has lost sight of that run's host: starting again is right) and where
-  /// the lock file can't be made.
+  /// Of one part, which two runs can't pack into one tar at once, by a file of its own in `folder`. Throws IoError
+  /// where another run holds it (as where a scheduler has lost sight of that run's host: starting again is right) and
+  /// where the lock file can't be made.
   FolderLock(const std::string& folder, const Shard& packed_part);
 
   ~FolderLock();
