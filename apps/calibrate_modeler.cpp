@@ -2,11 +2,12 @@
 #include <optional>
 
 #include "program.hpp"
+#include "tubebin/calibration/calibration.hpp"
 #include "tubebin/core/error.hpp"
-#include "tubebin/dataset/calibration.hpp"
+#include "tubebin/core/version.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
-#include "tubebin/dataset/model_dataset.hpp"
-#include "tubebin/dataset/worker_pool.hpp"
+#include "tubebin/jobs/worker_pool.hpp"
+#include "tubebin/results/model_dataset.hpp"
 
 namespace {
 
@@ -28,7 +29,7 @@ Exit codes: 0 done; 1 input or output failed; 2 wrong usage or configuration; 12
 interrupted (Ctrl-C: 130).)";
 
 struct Arguments {
-  CalibrationOptions options;
+  calibration::CalibrationOptions options;
   std::string config;
   std::string method;
   std::string ratios;
@@ -37,8 +38,8 @@ struct Arguments {
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
-  CalibrationOptions& options = arguments.options;
-  options.jobs = available_cores();
+  calibration::CalibrationOptions& options = arguments.options;
+  options.jobs = jobs::available_cores();
   app.add_option("DATASET", options.dataset, "A data set's folder with ground truth")->required();
   app.add_option("-o,--output", options.output, "The tuned configuration")->type_name("modeling.yaml")->required();
   app.add_option("-c,--config", arguments.config, "Configuration to begin with; without it, the defaults")
@@ -64,24 +65,24 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag("-q,--quiet", arguments.quiet, "No progress, only errors and results");
 }
 
-ModelConfig resolve_config(const Arguments& arguments) {
-  ModelConfig config;
-  config.modeling.method = ModelingMethod::region_growing;
-  if (!arguments.config.empty()) config = load_model_config(arguments.config);
+results::ModelConfig resolve_config(const Arguments& arguments) {
+  results::ModelConfig config;
+  config.modeling.method = modeling::ModelingMethod::region_growing;
+  if (!arguments.config.empty()) config = results::load_model_config(arguments.config);
   if (!arguments.method.empty())
-    config.modeling.method =
-        arguments.method == "centerline" ? ModelingMethod::centerline : ModelingMethod::region_growing;
+    config.modeling.method = arguments.method == "centerline" ? modeling::ModelingMethod::centerline
+                                                              : modeling::ModelingMethod::region_growing;
   return config;
 }
 
-void print_parameters(const CalibrationReport& report) {
+void print_parameters(const calibration::CalibrationReport& report) {
   fmt::print("{:36} {:>9} {:>9}   {}\n", "parameter", "before", "after", "range");
   for (std::size_t p = 0; p < report.parameters.size(); ++p)
     fmt::print("{:36} {:>9} {:>9}   {} to {}\n", report.parameters[p].key, report.before[p], report.after[p],
                report.parameters[p].range.low, report.parameters[p].range.high);
 }
 
-void print_recalls(const char* name, const BeforeAfter& recalls) {
+void print_recalls(const char* name, const calibration::BeforeAfter& recalls) {
   std::size_t better = 0, worse = 0;
   for (std::size_t i = 0; i < recalls.before.size(); ++i) {
     better += recalls.after[i] > recalls.before[i] ? 1u : 0u;
@@ -93,13 +94,13 @@ void print_recalls(const char* name, const BeforeAfter& recalls) {
 }
 
 int run(Arguments& arguments) {
-  CalibrationOptions& options = arguments.options;
-  const ModelConfig config = resolve_config(arguments);
+  calibration::CalibrationOptions& options = arguments.options;
+  const results::ModelConfig config = resolve_config(arguments);
   options.ratios =
-      arguments.ratios.empty() ? std::vector{config.modeling.filtering.ratio} : parse_ratios(arguments.ratios);
-  for (const std::string& text : arguments.parameters) options.parameters.push_back(parse_parameter(text));
-  const CalibrationReport report =
-      calibrate_modeler(options, config, arguments.quiet ? Progress::Style::none : Progress::Style::automatic);
+      arguments.ratios.empty() ? std::vector{config.modeling.filtering.ratio} : results::parse_ratios(arguments.ratios);
+  for (const std::string& text : arguments.parameters) options.parameters.push_back(calibration::parse_parameter(text));
+  const calibration::CalibrationReport report = calibration::calibrate_modeler(
+      options, config, arguments.quiet ? jobs::Progress::Style::none : jobs::Progress::Style::automatic);
   if (report.signal != 0) {
     fmt::print(stderr, "Interrupted after {} models; they are kept. Run the same command again for the rest.\n",
                report.runs_before + report.runs_made);

@@ -14,12 +14,12 @@
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/shell_word.hpp"
 #include "tubebin/dataset/manifest.hpp"
-#include "tubebin/dataset/points_of_run.hpp"
-#include "tubebin/dataset/progress.hpp"
 #include "tubebin/evaluation/html_report.hpp"
-#include "tubebin/evaluation/predictions.hpp"
 #include "tubebin/evaluation/result_tables.hpp"
-#include "tubebin/evaluation/results_folder.hpp"
+#include "tubebin/jobs/progress.hpp"
+#include "tubebin/results/labelled_points.hpp"
+#include "tubebin/results/predictions.hpp"
+#include "tubebin/results/results_folder.hpp"
 
 namespace {
 
@@ -42,12 +42,13 @@ docs/metrics.md defines every measure.
 Exit codes: 0 done; 1 input or output failed; 2 wrong usage; 3 finished, but some scenes or runs have no result (each
 is named).)";
 
-const std::map<std::string, TableFormat> kFormats = {{"table", TableFormat::table},
-                                                     {"markdown", TableFormat::markdown},
-                                                     {"csv", TableFormat::csv},
-                                                     {"json", TableFormat::json}};
-const std::map<std::string, SegmentField> kFields = {
-    {"auto", SegmentField::automatic}, {"label", SegmentField::label}, {"color", SegmentField::color}};
+const std::map<std::string, evaluation::TableFormat> kFormats = {{"table", evaluation::TableFormat::table},
+                                                                 {"markdown", evaluation::TableFormat::markdown},
+                                                                 {"csv", evaluation::TableFormat::csv},
+                                                                 {"json", evaluation::TableFormat::json}};
+const std::map<std::string, evaluation::SegmentField> kFields = {{"auto", evaluation::SegmentField::automatic},
+                                                                 {"label", evaluation::SegmentField::label},
+                                                                 {"color", evaluation::SegmentField::color}};
 
 template <typename Value>
 std::vector<std::string> names_of(const std::map<std::string, Value>& values) {
@@ -99,11 +100,11 @@ void add_options(CLI::App& app, Arguments& arguments) {
 }
 
 int evaluate_pair(const Arguments& arguments) {
-  const Cloud filtered = read_cloud(arguments.filtered);
-  const Cloud labeled = read_cloud(arguments.labeled);
-  const PairedIds pairs =
-      pair_clouds({filtered, arguments.filtered}, {labeled, arguments.labeled}, kFields.at(arguments.field));
-  fmt::print("{}", format_pair(pairs, kFormats.at(arguments.format)));
+  const cloud::Cloud filtered = cloud::read_cloud(arguments.filtered);
+  const cloud::Cloud labeled = cloud::read_cloud(arguments.labeled);
+  const evaluation::PairedIds pairs = evaluation::pair_clouds(
+      {filtered, arguments.filtered}, {labeled, arguments.labeled}, kFields.at(arguments.field));
+  fmt::print("{}", evaluation::format_pair(pairs, kFormats.at(arguments.format)));
   return static_cast<int>(ExitCode::done);
 }
 
@@ -116,7 +117,7 @@ void print_names(const std::vector<std::string>& names, const char* what) {
   if (names.size() > shown) fmt::print(stderr, "  and {} more (--format json names all)\n", names.size() - shown);
 }
 
-void print_gaps(const Evaluation& evaluation, const std::vector<std::string>& folders) {
+void print_gaps(const evaluation::Evaluation& evaluation, const std::vector<std::string>& folders) {
   print_names(evaluation.missing, evaluation.missing_counts_as_zero ? "scenes have no prediction and count as zero:"
                                                                     : "runs are not there yet and are left out:");
   if (!evaluation.missing.empty() && !evaluation.missing_counts_as_zero) {
@@ -128,51 +129,56 @@ void print_gaps(const Evaluation& evaluation, const std::vector<std::string>& fo
   for (const std::string& note : evaluation.notes) fmt::print(stderr, "evaluate: {}\n", note);
 }
 
-Evaluation read_evaluation(const Arguments& arguments) {
-  std::optional<Progress> progress;
-  const OnProgress on_progress = [&](std::size_t done, std::size_t total) {
+evaluation::Evaluation read_evaluation(const Arguments& arguments) {
+  std::optional<jobs::Progress> progress;
+  const evaluation::OnProgress on_progress = [&](std::size_t done, std::size_t total) {
     if (done == 1)
-      progress.emplace(total, "scenes", arguments.quiet ? Progress::Style::none : Progress::Style::automatic);
+      progress.emplace(total, "scenes",
+                       arguments.quiet ? jobs::Progress::Style::none : jobs::Progress::Style::automatic);
     progress->count_done();
     progress->show();
   };
   if (arguments.predictions.empty())
-    return read_results(arguments.folders, {arguments.dataset, arguments.jobs, on_progress});
+    return results::read_results(arguments.folders, {arguments.dataset, arguments.jobs, on_progress});
   if (arguments.folders.size() > 1) throw_config_error("--predictions takes one data set");
-  return score_predictions(arguments.folders.front(), arguments.predictions,
-                           {kFields.at(arguments.field), arguments.jobs, on_progress});
+  return results::score_predictions(arguments.folders.front(), arguments.predictions,
+                                    {kFields.at(arguments.field), arguments.jobs, on_progress});
 }
 
 /// What the manifests of the runs' data sets say.
-GenerationSeconds generation_seconds(const Evaluation& evaluation) {
+evaluation::GenerationSeconds generation_seconds(const evaluation::Evaluation& evaluation) {
   std::set<std::string> datasets;
-  for (const RunScore& run : evaluation.runs)
+  for (const evaluation::RunScore& run : evaluation.runs)
     if (!run.dataset.empty()) datasets.insert(run.dataset);
-  GenerationSeconds seconds;
+  evaluation::GenerationSeconds seconds;
   for (const std::string& dataset : datasets) {
-    const Manifest manifest(dataset);
+    const dataset::Manifest manifest(dataset);
     for (const auto& [id, record] : manifest.records())
       if (const auto total = record.seconds.find("total"); total != record.seconds.end())
-        seconds[parse_scene_name(id).set][record.tubes].push_back(total->second);
+        seconds[evaluation::parse_scene_name(id).set][record.tubes].push_back(total->second);
   }
   return seconds;
 }
 
-void write_plots(const std::string& folder, const std::vector<Plot>& plots) {
+void write_plots(const std::string& folder, const std::vector<evaluation::Plot>& plots) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw_io_error("{}: cannot be made: {}", folder, error.message());
-  for (const Plot& plot : plots) write_file_atomically(folder + "/" + plot.name + ".svg", format_svg(plot));
+  for (const evaluation::Plot& plot : plots)
+    write_file_atomically(folder + "/" + plot.name + ".svg", evaluation::format_svg(plot));
 }
 
 int evaluate_folders(const Arguments& arguments) {
-  const Evaluation evaluation = read_evaluation(arguments);
-  const GenerationSeconds generation = generation_seconds(evaluation);
-  fmt::print("{}", format_results(evaluation, kFormats.at(arguments.format), arguments.paper ? &generation : nullptr));
+  const evaluation::Evaluation evaluation = read_evaluation(arguments);
+  const evaluation::GenerationSeconds generation = generation_seconds(evaluation);
+  fmt::print("{}", evaluation::format_results(evaluation, kFormats.at(arguments.format),
+                                              arguments.paper ? &generation : nullptr));
   print_gaps(evaluation, arguments.folders);
   if (!arguments.html.empty())
-    write_file_atomically(arguments.html, format_html_report({evaluation, generation, points_of_run}));
-  if (!arguments.plots.empty()) write_plots(arguments.plots, paper_plots(summarize(evaluation.runs), generation));
+    write_file_atomically(arguments.html,
+                          evaluation::format_html_report({evaluation, generation, results::labelled_points}));
+  if (!arguments.plots.empty())
+    write_plots(arguments.plots, evaluation::paper_plots(evaluation::summarize(evaluation.runs), generation));
   const bool is_complete = evaluation.missing.empty() && evaluation.failed.empty();
   return static_cast<int>(is_complete ? ExitCode::done : ExitCode::incomplete);
 }

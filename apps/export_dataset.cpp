@@ -1,12 +1,13 @@
 /// A data set in the formats that other tools read.
-#include "tubebin/dataset/export_dataset.hpp"
+#include "tubebin/export/export_dataset.hpp"
 
 #include <fmt/ranges.h>
 
 #include "program.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/core/version.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
-#include "tubebin/dataset/worker_pool.hpp"
+#include "tubebin/jobs/worker_pool.hpp"
 
 namespace {
 
@@ -28,8 +29,9 @@ Run the same command again after an interruption, or when the data set has grown
 Exit codes: 0 done; 1 input or output failed; 2 wrong usage; 3 finished, but some scenes could not be exported (each is
 named); 130 and 143 interrupted by Ctrl-C or SIGTERM.)";
 
-int run(const ExportOptions& options, bool quiet) {
-  const ExportReport report = export_dataset(options, quiet ? Progress::Style::none : Progress::Style::automatic);
+int run(const exports::ExportOptions& options, bool quiet) {
+  const exports::ExportReport report =
+      exports::export_dataset(options, quiet ? jobs::Progress::Style::none : jobs::Progress::Style::automatic);
   for (const std::string& failed : report.failed) fmt::print(stderr, "{}\n", failed);
   if (report.signal != 0) {
     fmt::print(stderr, "Interrupted after {} of {} scenes; they are kept. Run the same command again for the rest.\n",
@@ -44,7 +46,7 @@ int run(const ExportOptions& options, bool quiet) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ExportOptions options{.dataset = "", .output = "", .format = "", .jobs = available_cores()};
+  exports::ExportOptions options{.dataset = "", .output = "", .format = "", .jobs = jobs::available_cores()};
   bool quiet = false;
   CLI::App app("Writes a data set of generate_dataset in a format that other tools read.");
   app.footer(kExamples);
@@ -52,7 +54,7 @@ int main(int argc, char** argv) {
   app.add_option("DATASET", options.dataset, "Folder of the data set")->required();
   app.add_option("-f,--format", options.format, "What to write")
       ->required()
-      ->check(CLI::IsMember(export_format_names()));
+      ->check(CLI::IsMember(exports::export_format_names()));
   app.add_option("-o,--output", options.output, "Folder of the export")->required()->type_name("DIR");
   app.add_option("-j,--jobs", options.jobs, "Worker processes")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_flag("-q,--quiet", quiet, "No progress, only errors and results");

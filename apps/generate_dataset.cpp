@@ -7,10 +7,12 @@
 #include <optional>
 
 #include "program.hpp"
+#include "tubebin/core/version.hpp"
 #include "tubebin/dataset/merge_datasets.hpp"
-#include "tubebin/dataset/shard.hpp"
 #include "tubebin/dataset/timing_table.hpp"
 #include "tubebin/dataset/verify_dataset.hpp"
+#include "tubebin/evaluation/paper_figures.hpp"
+#include "tubebin/jobs/shard.hpp"
 #include "tubebin/scan/scanner.hpp"
 
 namespace {
@@ -45,7 +47,7 @@ struct Arguments {
   std::string tubes;
   std::optional<int> cases;
   std::optional<std::uint64_t> seed;
-  int jobs = available_cores();
+  int jobs = jobs::available_cores();
   std::string shard;
   std::optional<int> shard_count;
   bool preview = false;
@@ -55,7 +57,9 @@ struct Arguments {
   std::string verify;
   bool repair = false;
 
-  Progress::Style progress() const { return quiet ? Progress::Style::none : Progress::Style::automatic; }
+  jobs::Progress::Style progress() const {
+    return quiet ? jobs::Progress::Style::none : jobs::Progress::Style::automatic;
+  }
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -78,7 +82,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag_callback(
       "--config-reference",
       [] {
-        fmt::print("{}", document_config());
+        fmt::print("{}", dataset::document_config());
         throw CLI::Success();
       },
       "Print every key of a configuration as Markdown, and exit");
@@ -101,11 +105,11 @@ KeyPlaces whole_file(const std::string& name) {
   return places;
 }
 
-DatasetConfig resolve_config(const Arguments& arguments) {
+dataset::DatasetConfig resolve_config(const Arguments& arguments) {
   if (arguments.config.empty() || arguments.output.empty())
     throw_config_error("CONFIG.yaml and --output DIR are needed; --help shows examples");
-  DatasetConfig config = load_config(arguments.config);
-  if (!arguments.tubes.empty()) config.tubes = parse_tube_counts(arguments.tubes);
+  dataset::DatasetConfig config = dataset::load_config(arguments.config);
+  if (!arguments.tubes.empty()) config.tubes = dataset::parse_tube_counts(arguments.tubes);
   if (arguments.cases) config.cases = *arguments.cases;
   if (arguments.seed) config.seed = *arguments.seed;
   if (arguments.preview) config.output.preview = true;
@@ -113,7 +117,7 @@ DatasetConfig resolve_config(const Arguments& arguments) {
   return config;
 }
 
-void print_summary(const GenerationReport& report, std::size_t scene_count) {
+void print_summary(const dataset::GenerationReport& report, std::size_t scene_count) {
   std::string rejects = fmt::format("{} attempts were rejected", report.rejects_total());
   std::vector<std::string> reasons;
   for (const auto& [reason, count] : report.rejects) reasons.push_back(fmt::format("{} {}", count, reason));
@@ -123,11 +127,19 @@ void print_summary(const GenerationReport& report, std::size_t scene_count) {
              rejects);
 }
 
+/// Table 1 of the paper, for its sets A and B.
+dataset::SecondsByTubes paper_seconds(const std::string& set) {
+  const auto& by_set = evaluation::paper_figures().generation_seconds;
+  const auto seconds = by_set.find(set);
+  return seconds == by_set.end() ? dataset::SecondsByTubes{} : seconds->second;
+}
+
 /// Makes the scenes and says how it went.
-int make_scenes(DatasetFolder& folder, const std::vector<SceneId>& scenes, const Shard& shard,
+int make_scenes(dataset::DatasetFolder& folder, const std::vector<dataset::SceneId>& scenes, const jobs::Shard& shard,
                 const Arguments& arguments) {
   const std::string pack = arguments.pack ? shard.name() : "";
-  const GenerationReport report = generate_dataset(folder, scenes, arguments.jobs, arguments.progress(), pack);
+  const dataset::GenerationReport report =
+      dataset::generate_dataset(folder, scenes, arguments.jobs, arguments.progress(), pack);
   if (!arguments.quiet) print_summary(report, scenes.size());
   for (const std::string& failed : report.failed) fmt::print(stderr, "{}\n", failed);
   if (report.signal != 0) {
@@ -135,47 +147,50 @@ int make_scenes(DatasetFolder& folder, const std::vector<SceneId>& scenes, const
                report.complete_before + report.made, scenes.size());
     return 128 + report.signal;
   }
-  fmt::print("{}", format_timing_table(folder.manifest(), scenes));
+  fmt::print("{}", dataset::format_timing_table(folder.manifest(), scenes, paper_seconds(folder.config().set)));
   return static_cast<int>(report.failed.empty() ? ExitCode::done : ExitCode::incomplete);
 }
 
-std::int64_t cost_of(const std::vector<SceneId>& scenes) {
+std::int64_t cost_of(const std::vector<dataset::SceneId>& scenes) {
   std::int64_t cost = 0;
-  for (const SceneId& id : scenes) cost += generation_cost(id.tubes);
+  for (const dataset::SceneId& id : scenes) cost += jobs::generation_cost(id.tubes);
   return cost;
 }
 
-void print_part(const ShardChoice& choice, const std::vector<SceneId>& scenes, const DatasetConfig& config) {
-  const std::vector<SceneId> all = list_scenes(config);
+void print_part(const jobs::ShardChoice& choice, const std::vector<dataset::SceneId>& scenes,
+                const dataset::DatasetConfig& config) {
+  const std::vector<dataset::SceneId> all = dataset::list_scenes(config);
   fmt::print(stderr, "Part {} of {} ({}): {} of {} scenes, {:.1f} % of the work\n", choice.shard.index,
              choice.shard.count, choice.source, scenes.size(), all.size(),
              100.0 * static_cast<double>(cost_of(scenes)) / static_cast<double>(cost_of(all)));
 }
 
 int generate(const Arguments& arguments) {
-  const ShardChoice choice = choose_shard(arguments.shard, arguments.shard_count, std::getenv);
-  const DatasetConfig config = resolve_config(arguments);
-  const std::vector<SceneId> scenes = list_scenes(config, choice.shard);
+  const jobs::ShardChoice choice = jobs::choose_shard(arguments.shard, arguments.shard_count, std::getenv);
+  const dataset::DatasetConfig config = resolve_config(arguments);
+  const std::vector<dataset::SceneId> scenes = dataset::list_scenes(config, choice.shard);
   if (!choice.is_sharded()) {
-    DatasetFolder folder(arguments.output, config);
+    dataset::DatasetFolder folder(arguments.output, config);
     return make_scenes(folder, scenes, {}, arguments);
   }
   if (!arguments.quiet) print_part(choice, scenes, config);
-  DatasetFolder folder(arguments.output, config, choice.shard,
-                       arguments.pack ? DatasetFolder::Part::packed : DatasetFolder::Part::loose);
+  dataset::DatasetFolder folder(
+      arguments.output, config, choice.shard,
+      arguments.pack ? dataset::DatasetFolder::Part::packed : dataset::DatasetFolder::Part::loose);
   return make_scenes(folder, scenes, choice.shard, arguments);
 }
 
-int repair(const VerificationReport& report, const Arguments& arguments) {
-  const DatasetConfig config = read_dataset_config(arguments.verify);
+int repair(const dataset::VerificationReport& report, const Arguments& arguments) {
+  const dataset::DatasetConfig config = dataset::read_dataset_config(arguments.verify);
   check(config, whole_file(arguments.verify + "/config.yaml"));
-  DatasetFolder folder(arguments.verify, config);
-  forget_damage(folder, report);
+  dataset::DatasetFolder folder(arguments.verify, config);
+  dataset::forget_damage(folder, report);
   return make_scenes(folder, report.damaged, {}, arguments);
 }
 
 int verify(const Arguments& arguments) {
-  const VerificationReport report = verify_dataset(arguments.verify, arguments.jobs, arguments.progress());
+  const dataset::VerificationReport report =
+      dataset::verify_dataset(arguments.verify, arguments.jobs, arguments.progress());
   for (const std::string& problem : report.problems) fmt::print("{}\n", problem);
   fmt::print("{}: {} scenes checked, {} damaged, {} not generated yet\n", arguments.verify, report.checked,
              report.damaged.size(), report.missing);
@@ -194,8 +209,8 @@ void print_names(const std::vector<std::string>& names) {
 
 int merge(const Arguments& arguments) {
   const std::string& output = arguments.merge.front();
-  const MergeReport report = merge_datasets(output, {arguments.merge.begin() + 1, arguments.merge.end()},
-                                            arguments.jobs, arguments.progress());
+  const dataset::MergeReport report = dataset::merge_datasets(
+      output, {arguments.merge.begin() + 1, arguments.merge.end()}, arguments.jobs, arguments.progress());
   if (report.signal != 0) {
     fmt::print(stderr, "Interrupted; what is joined is kept. Run the same command again for the rest.\n");
     return 128 + report.signal;
@@ -219,7 +234,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Generates data sets of entangled tubes in a bin: labelled point clouds with their ground truth.");
   app.footer(kExamples);
-  app.set_version_flag("--version", fmt::format("{} (Embree {})", tool_version(), embree_version()));
+  app.set_version_flag("--version", fmt::format("{} (Embree {})", tool_version(), scan::embree_version()));
   add_options(app, arguments);
   return run_program("generate_dataset", app, argc, argv, [&] { return run(arguments); });
 }

@@ -6,10 +6,11 @@
 #include "program.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/version.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
-#include "tubebin/dataset/model_dataset.hpp"
-#include "tubebin/dataset/worker_pool.hpp"
+#include "tubebin/jobs/worker_pool.hpp"
 #include "tubebin/modeling/model_json.hpp"
+#include "tubebin/results/model_dataset.hpp"
 
 namespace {
 
@@ -46,7 +47,7 @@ struct Arguments {
   std::optional<double> tube_length;
   std::optional<std::uint64_t> seed;
   double scale = 1.0;
-  int jobs = available_cores();
+  int jobs = jobs::available_cores();
   int cases = 0;
   std::string shard;
   std::optional<int> shard_count;
@@ -91,7 +92,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag_callback(
       "--config-reference",
       [] {
-        ModelConfig defaults;
+        results::ModelConfig defaults;
         fmt::print("{}", document_fields([&](Fields& fields) { describe(fields, defaults); }));
         throw CLI::Success();
       },
@@ -100,8 +101,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
 }
 
 /// Numbers from the command line pass the same checks as the configuration's.
-ModelConfig resolve_config(const Arguments& arguments) {
-  ModelConfig config = arguments.config.empty() ? ModelConfig{} : load_model_config(arguments.config);
+results::ModelConfig resolve_config(const Arguments& arguments) {
+  results::ModelConfig config =
+      arguments.config.empty() ? results::ModelConfig{} : results::load_model_config(arguments.config);
   std::string text;
   const auto set = [&](const char* key, const auto& value) {
     if (value) text += fmt::format("{}: {}\n", key, *value);
@@ -120,47 +122,50 @@ int model_one(const Arguments& arguments) {
       !arguments.shard.empty())
     throw_config_error("{} is a file: --ratios, --method both, --cases, --shard and --keep-clouds are for data sets",
                        arguments.input);
-  ModelConfig config = resolve_config(arguments);
-  const CloudToModel input = read_cloud_to_model(arguments.input, arguments.scale);
-  const ModelingResult result = model_cloud(input, config);
+  results::ModelConfig config = resolve_config(arguments);
+  const results::CloudToModel input = results::read_cloud_to_model(arguments.input, arguments.scale);
+  const modeling::ModelingResult result = results::model_cloud(input, config);
   std::error_code error;
   fs::create_directories(arguments.output, error);
   if (error) throw_io_error("{}: cannot be made: {}", arguments.output, error.message());
-  write_cloud(arguments.output + "/filtered.pcd", filtered_cloud(input.cloud, result), CloudFormat::pcd_binary);
-  write_cloud(arguments.output + "/labeled.pcd", labeled_cloud(input.cloud, result), CloudFormat::pcd_binary);
-  write_file_atomically(arguments.output + "/model.json",
-                        format_model_json(
-                            result, model_colors(result), [&](Fields& fields) { describe(fields, config); }, true));
+  cloud::write_cloud(arguments.output + "/filtered.pcd", results::filtered_cloud(input.cloud, result),
+                     cloud::CloudFormat::pcd_binary);
+  cloud::write_cloud(arguments.output + "/labeled.pcd", results::labeled_cloud(input.cloud, result),
+                     cloud::CloudFormat::pcd_binary);
+  write_file_atomically(arguments.output + "/model.json", modeling::format_model_json(
+                                                              result, results::model_colors(result),
+                                                              [&](Fields& fields) { describe(fields, config); }, true));
 
-  const auto unlabeled = std::count(result.labels.begin(), result.labels.end(), Label{0});
+  const auto unlabeled = std::count(result.labels.begin(), result.labels.end(), cloud::Label{0});
   fmt::print("{} tubes of radius {:.2f} mm in {} points, {} of them without a tube; {:.1f} ms\n", result.tubes.size(),
              result.radius * 1e3, result.labels.size(), unlabeled, result.seconds.total() * 1e3);
   for (std::size_t k = 0; k < result.tubes.size(); ++k)
     fmt::print("tube {}: {} cylinders, {:.3f} m, {} points\n", k + 1, result.tubes[k].cylinder_count(),
                result.tubes[k].length(),
-               std::count(result.labels.begin(), result.labels.end(), static_cast<Label>(k + 1)));
+               std::count(result.labels.begin(), result.labels.end(), static_cast<cloud::Label>(k + 1)));
   return static_cast<int>(ExitCode::done);
 }
 
 /// A folder, or a pack of scenes.
 bool is_dataset(const std::string& path) { return fs::is_directory(path) || fs::path(path).extension() == ".tar"; }
 
-BatchOptions batch_options(const Arguments& arguments, const ModelConfig& config) {
+results::BatchOptions batch_options(const Arguments& arguments, const results::ModelConfig& config) {
   if (arguments.scale != 1.0) throw_config_error("--scale is for single files; data sets are in metres");
   if (arguments.ratio && !arguments.ratios.empty()) throw_config_error("--ratio and --ratios say the same: give one");
-  BatchOptions options;
+  results::BatchOptions options;
   options.dataset = arguments.input;
   options.results = arguments.output;
   options.methods = {config.modeling.method};
   options.ratios = {config.modeling.filtering.ratio};
   options.cases = arguments.cases;
-  if (arguments.method == "both") options.methods = {ModelingMethod::centerline, ModelingMethod::region_growing};
-  if (!arguments.ratios.empty()) options.ratios = parse_ratios(arguments.ratios);
+  if (arguments.method == "both")
+    options.methods = {modeling::ModelingMethod::centerline, modeling::ModelingMethod::region_growing};
+  if (!arguments.ratios.empty()) options.ratios = results::parse_ratios(arguments.ratios);
   return options;
 }
 
-void choose_part(BatchOptions& options, const Arguments& arguments) {
-  const ShardChoice choice = choose_shard(arguments.shard, arguments.shard_count, std::getenv);
+void choose_part(results::BatchOptions& options, const Arguments& arguments) {
+  const jobs::ShardChoice choice = jobs::choose_shard(arguments.shard, arguments.shard_count, std::getenv);
   if (!choice.is_sharded()) return;
   options.shard = choice.shard;
   if (arguments.quiet) return;
@@ -170,12 +175,12 @@ void choose_part(BatchOptions& options, const Arguments& arguments) {
   };
 }
 
-int model_many(BatchOptions options, const ModelConfig& config, const Arguments& arguments) {
+int model_many(results::BatchOptions options, const results::ModelConfig& config, const Arguments& arguments) {
   options.jobs = arguments.jobs;
   options.keep_clouds = arguments.keep_clouds;
   choose_part(options, arguments);
-  const BatchReport report =
-      model_dataset(options, config, arguments.quiet ? Progress::Style::none : Progress::Style::automatic);
+  const results::BatchReport report = results::model_dataset(
+      options, config, arguments.quiet ? jobs::Progress::Style::none : jobs::Progress::Style::automatic);
   for (const std::string& failed : report.failed) fmt::print(stderr, "{}\n", failed);
   if (report.signal != 0)
     fmt::print(stderr, "Interrupted after {} of {} runs; they are kept. Run the same command again for the rest.\n",
@@ -192,7 +197,7 @@ int resume(const Arguments& arguments) {
   if (!arguments.config.empty() || !arguments.method.empty() || arguments.ratio || !arguments.ratios.empty() ||
       arguments.radius || arguments.tube_length || arguments.seed || arguments.cases > 0)
     throw_config_error("--resume takes the options of the modeller from {}/index.json", arguments.resume.front());
-  const ResumedBatch batch = resume_batch(arguments.resume);
+  const results::ResumedBatch batch = results::resume_batch(arguments.resume);
   return model_many(batch.options, batch.config, arguments);
 }
 
@@ -201,7 +206,7 @@ int run(const Arguments& arguments) {
   if (arguments.input.empty() || arguments.output.empty())
     throw_config_error("CLOUD_OR_DATASET and --output DIR are needed; --help shows examples");
   if (!is_dataset(arguments.input)) return model_one(arguments);
-  const ModelConfig config = resolve_config(arguments);
+  const results::ModelConfig config = resolve_config(arguments);
   return model_many(batch_options(arguments, config), config, arguments);
 }
 

@@ -24,10 +24,11 @@ struct Costs {
   int rejected = 0;
 };
 
-void make_scene(const DatasetConfig& config, const SceneStore& store, const SceneId& id, Costs& costs) {
+void make_scene(const dataset::DatasetConfig& config, const dataset::SceneStore& store, const dataset::SceneId& id,
+                Costs& costs) {
   for (int attempt = 0; attempt < config.attempts_max; ++attempt) {
     const double start = now();
-    const GeneratedScene scene = generate_scene(config, id, attempt);
+    const dataset::GeneratedScene scene = dataset::generate_scene(config, id, attempt);
     const double generated = now();
     if (scene.failure.empty()) {
       store.begin_write(id.name(), scene.content)();
@@ -44,8 +45,8 @@ void make_scene(const DatasetConfig& config, const SceneStore& store, const Scen
 
 int main(int argc, char** argv) try {
   if (argc < 5) throw_config_error("usage: dataset_table CONFIG.yaml FOLDER CASES TUBES...");
-  const DatasetConfig config = load_config(argv[1]);
-  const SceneStore store(argv[2], config.output);
+  const dataset::DatasetConfig config = dataset::load_config(argv[1]);
+  const dataset::SceneStore store(argv[2], config.output);
   const int cases = std::stoi(argv[3]);
 
   fmt::print("| tubes | build ms | drop ms | scan ms | write ms | total ms | rejected a scene | peak MB |\n");

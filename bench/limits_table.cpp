@@ -37,17 +37,18 @@ double contacts_of_step = 0.0;
 /// Embree's own job: the first triangle of each ray, eight rays at a time.
 class TriangleScene {
  public:
-  explicit TriangleScene(const Scene& scene) : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_.get())) {
+  explicit TriangleScene(const scene::Scene& scene)
+      : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_.get())) {
     const Vec3 origin = scene.scanner.world_from_scanner().translation();
-    Mesh bin;
-    for (const Box& box : bin_boxes(scene.bin)) add_box(box, origin, {}, bin);
+    render::Mesh bin;
+    for (const scene::Box& box : scene::bin_boxes(scene.bin)) render::add_box(box, origin, {}, bin);
     attach(bin);
-    for (const PlacedTube& tube : scene.tubes) attach(tube_mesh(tube, origin, {}));
+    for (const scene::PlacedTube& tube : scene.tubes) attach(render::tube_mesh(tube, origin, {}));
     rtcCommitScene(scene_.get());
   }
 
   /// Rays that hit; `directions` is padded to a multiple of eight.
-  std::size_t count_hits(const std::vector<Vec3>& directions, const Scanner& scanner) const {
+  std::size_t count_hits(const std::vector<Vec3>& directions, const scene::Scanner& scanner) const {
     constexpr std::size_t kPacket = 8;
     alignas(32) const int valid[kPacket] = {-1, -1, -1, -1, -1, -1, -1, -1};
     std::size_t hits = 0;
@@ -72,14 +73,14 @@ class TriangleScene {
   }
 
  private:
-  void attach(const Mesh& mesh) {
+  void attach(const render::Mesh& mesh) {
     const embree::Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     const auto buffer = [&](RTCBufferType type, RTCFormat format, std::size_t size, std::size_t count) {
       return rtcSetNewGeometryBuffer(geometry.get(), type, 0, format, size, count);
     };
     auto* vertices =
         static_cast<float*>(buffer(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
-    for (const Vertex& vertex : mesh.vertices)
+    for (const render::Vertex& vertex : mesh.vertices)
       for (int axis = 0; axis < 3; ++axis) *vertices++ = vertex.position[axis];
     auto* indices = static_cast<std::uint32_t*>(
         buffer(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.indices.size() / 3));
@@ -92,9 +93,9 @@ class TriangleScene {
   embree::Scene scene_;
 };
 
-void add_scan(const SceneContent& content, double seconds, Stage& stage) {
-  const Camera camera(content.record.scene.scanner);
-  const PixelWindow& window = content.record.window;
+void add_scan(const dataset::SceneContent& content, double seconds, Stage& stage) {
+  const scene::Camera camera(content.record.scene.scanner);
+  const scene::PixelWindow& window = content.record.window;
   std::vector<Vec3> directions;
   for (int row = window.y; row < window.y + window.height; ++row)
     for (int column = window.x; column < window.x + window.width; ++column)
@@ -108,8 +109,8 @@ void add_scan(const SceneContent& content, double seconds, Stage& stage) {
   stage.limit_seconds += now() - start;
 }
 
-void add_write(const SceneStore& store, const std::string& folder, const std::string& name, const SceneContent& content,
-               Stage& stage) {
+void add_write(const dataset::SceneStore& store, const std::string& folder, const std::string& name,
+               const dataset::SceneContent& content, Stage& stage) {
   double start = now();
   const auto files = store.begin_write(name, content)();
   stage.seconds += now() - start;
@@ -156,15 +157,15 @@ dJointID __wrap_dJointCreateContact(dWorldID world, dJointGroupID group, const d
 
 int main(int argc, char** argv) try {
   if (argc != 5) throw_config_error("usage: limits_table CONFIG.yaml FOLDER CASES TUBES");
-  const DatasetConfig config = load_config(argv[1]);
-  const SceneStore store(argv[2], config.output);
+  const dataset::DatasetConfig config = dataset::load_config(argv[1]);
+  const dataset::SceneStore store(argv[2], config.output);
   Stage scan_stage, write_stage;
   for (int case_number = 1; case_number <= std::stoi(argv[3]); ++case_number) {
-    const SceneId id{config.set, std::stoi(argv[4]), case_number};
-    GeneratedScene scene;
+    const dataset::SceneId id{config.set, std::stoi(argv[4]), case_number};
+    dataset::GeneratedScene scene;
     for (int attempt = 0; attempt == 0 || !scene.failure.empty(); ++attempt) {
       if (attempt == config.attempts_max) throw_io_error("{}: {}", id.name(), scene.failure_detail);
-      scene = generate_scene(config, id, attempt);
+      scene = dataset::generate_scene(config, id, attempt);
       drop_stage.seconds += scene.seconds["drop"];
     }
     add_scan(scene.content, scene.seconds["scan"], scan_stage);

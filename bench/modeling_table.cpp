@@ -16,8 +16,8 @@
 #include <filesystem>
 #include <map>
 
-#include "tubebin/dataset/model_cloud.hpp"
 #include "tubebin/evaluation/micro_recall.hpp"
+#include "tubebin/results/model_cloud.hpp"
 
 namespace {
 
@@ -35,23 +35,24 @@ struct Variant {
   const char* name;
   double noise;  ///< metres, standard deviation along the ray
   double ratio;
-  ModelingMethod method;
+  modeling::ModelingMethod method;
   bool radius_known;
 };
 
-constexpr Variant kVariants[] = {{"centerline", 0.0, 1.0, ModelingMethod::centerline, true},
-                                 {"centerline, 0.3 mm noise", 0.0003, 1.0, ModelingMethod::centerline, true},
-                                 {"centerline, ratio 0.3", 0.0, 0.3, ModelingMethod::centerline, true},
-                                 {"centerline, radius estimated", 0.0, 1.0, ModelingMethod::centerline, false},
-                                 {"region_growing, ratio 0.3", 0.0, 0.3, ModelingMethod::region_growing, true},
-                                 {"region_growing", 0.0, 1.0, ModelingMethod::region_growing, true}};
+constexpr Variant kVariants[] = {
+    {"centerline", 0.0, 1.0, modeling::ModelingMethod::centerline, true},
+    {"centerline, 0.3 mm noise", 0.0003, 1.0, modeling::ModelingMethod::centerline, true},
+    {"centerline, ratio 0.3", 0.0, 0.3, modeling::ModelingMethod::centerline, true},
+    {"centerline, radius estimated", 0.0, 1.0, modeling::ModelingMethod::centerline, false},
+    {"region_growing, ratio 0.3", 0.0, 0.3, modeling::ModelingMethod::region_growing, true},
+    {"region_growing", 0.0, 1.0, modeling::ModelingMethod::region_growing, true}};
 
-CloudToModel with_noise(CloudToModel input, double noise, std::uint64_t seed) {
+results::CloudToModel with_noise(results::CloudToModel input, double noise, std::uint64_t seed) {
   if (noise <= 0.0) return input;
   Random random(seed);
   const Vec3 eye = input.cloud.world_from_sensor.translation();
-  for (Point& p : input.cloud.points)
-    if (is_finite(p))
+  for (cloud::Point& p : input.cloud.points)
+    if (cloud::is_finite(p))
       p = (p.cast<double>() + noise * random.normal() * (p.cast<double>() - eye).normalized()).cast<float>();
   return input;
 }
@@ -68,57 +69,58 @@ void add_samples(const Vec3& a, const Vec3& b, const Distance& distance, std::ve
   for (int k = 0; k < count; ++k) distances.push_back(distance(a + (k + 0.5) / count * (b - a)));
 }
 
-void compare_geometry(const CloudToModel& input, const ModelingResult& result, Score& score) {
+void compare_geometry(const results::CloudToModel& input, const modeling::ModelingResult& result, Score& score) {
   const auto to_truth = [&](const Vec3& p) {
     double nearest = 1.0;
-    for (const PlacedTube& tube : input.scene->scene.tubes)
-      for (const Cylinder& c : tube.tube.cylinders)
+    for (const scene::PlacedTube& tube : input.scene->scene.tubes)
+      for (const tube::Cylinder& c : tube.tube.cylinders)
         nearest = std::min(nearest, distance_to_segment(p, tube.node_in_world(c.node_a), tube.node_in_world(c.node_b)));
     return nearest;
   };
-  for (const TubeModel& tube : result.tubes)
+  for (const modeling::TubeModel& tube : result.tubes)
     for (const auto& [nodes, bridged] : tube.paths)
       for (std::size_t k = 0; k + 1 < nodes.size(); ++k)
         if (!bridged[k]) add_samples(nodes[k], nodes[k + 1], to_truth, score.to_truth);
   // The other way from where points say that the tube is in sight: each such point's foot on its true centreline.
   for (std::size_t k = 0; k < result.source.size(); k += 50) {
-    const Label label = input.cloud.labels[result.source[k]];
+    const cloud::Label label = input.cloud.labels[result.source[k]];
     if (label == 0) continue;
     const Vec3 p = input.cloud.points[result.source[k]].cast<double>();
-    const PlacedTube& tube = input.scene->scene.tubes[label - 1];
+    const scene::PlacedTube& tube = input.scene->scene.tubes[label - 1];
     Vec3 foot = p;
     double nearest = 1.0;
-    for (const Cylinder& c : tube.tube.cylinders) {
+    for (const tube::Cylinder& c : tube.tube.cylinders) {
       const Vec3 a = tube.node_in_world(c.node_a), b = tube.node_in_world(c.node_b);
       const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
       if ((p - a - t * (b - a)).norm() < nearest) nearest = (p - a - t * (b - a)).norm(), foot = a + t * (b - a);
     }
     double to_model = 1.0;
-    for (const TubeModel& found : result.tubes)
-      for (const TubePath& path : found.paths) to_model = std::min(to_model, distance_to_polyline(foot, path.nodes));
+    for (const modeling::TubeModel& found : result.tubes)
+      for (const modeling::TubePath& path : found.paths)
+        to_model = std::min(to_model, modeling::distance_to_polyline(foot, path.nodes));
     score.to_model.push_back(to_model);
   }
 }
 
-Score score_of(const CloudToModel& clean, const Variant& variant, std::uint64_t seed) {
-  const CloudToModel input = with_noise(clean, variant.noise, seed);
-  ModelConfig config;
+Score score_of(const results::CloudToModel& clean, const Variant& variant, std::uint64_t seed) {
+  const results::CloudToModel input = with_noise(clean, variant.noise, seed);
+  results::ModelConfig config;
   config.modeling.method = variant.method;
   config.modeling.filtering.ratio = variant.ratio;
   if (variant.radius_known) config.modeling.radius = clean.scene->scene.tubes.front().tube.radius;
   Score score{.seconds = 1e9, .to_truth = {}, .to_model = {}};
-  ModelingResult result;
-  const int repeats = variant.method == ModelingMethod::centerline ? 3 : 1;
+  modeling::ModelingResult result;
+  const int repeats = variant.method == modeling::ModelingMethod::centerline ? 3 : 1;
   for (int repeat = 0; repeat < repeats; ++repeat) {  // the fastest: others' work on the machine only adds
-    result = model_cloud(input, config);
+    result = results::model_cloud(input, config);
     score.seconds = std::min(score.seconds, result.seconds.total());
   }
-  std::vector<SegmentId> truth, predicted;
+  std::vector<evaluation::SegmentId> truth, predicted;
   for (std::size_t k = 0; k < result.source.size(); ++k) {
     truth.push_back(input.cloud.labels[result.source[k]]);
     predicted.push_back(result.labels[k]);
   }
-  score.micro_recall = match_segments(count_pairs(truth, predicted, 0U)).micro_recall();
+  score.micro_recall = evaluation::match_segments(evaluation::count_pairs(truth, predicted, 0U)).micro_recall();
   score.tubes_found = result.tubes.size();
   compare_geometry(clean, result, score);
   return score;
@@ -128,18 +130,18 @@ using PclPoints = pcl::PointCloud<pcl::PointXYZ>;
 using PclNormals = pcl::PointCloud<pcl::Normal>;
 
 /// Normals, RegionGrowing and RANSAC cylinders as PCL's tutorials put them together, on the points inside the bin.
-double stock_pcl_seconds(const CloudToModel& input) {
-  ModelConfig config;
-  const ModelingInput positions{
+double stock_pcl_seconds(const results::CloudToModel& input) {
+  results::ModelConfig config;
+  const modeling::ModelingInput positions{
       .points = input.cloud.points, .world_from_sensor = input.cloud.world_from_sensor, .bin = input.scene->scene.bin};
   PclPoints::Ptr points(new PclPoints);
-  for (const std::uint32_t i : crop_bin(positions, config.modeling.filtering))
+  for (const std::uint32_t i : modeling::crop_bin(positions, config.modeling.filtering))
     points->push_back({input.cloud.points[i].x(), input.cloud.points[i].y(), input.cloud.points[i].z()});
   const auto start = std::chrono::steady_clock::now();
   pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>);
   PclNormals::Ptr normals(new PclNormals);
   pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
-  const Point eye = input.cloud.world_from_sensor.translation().cast<float>();
+  const cloud::Point eye = input.cloud.world_from_sensor.translation().cast<float>();
   estimation.setViewPoint(eye.x(), eye.y(), eye.z());
   estimation.setInputCloud(points);
   estimation.setSearchMethod(tree);
@@ -243,7 +245,7 @@ int main(int argc, char** argv) try {
       if (entry.path().filename() == "cloud.pcd") clouds.push_back(entry.path());
     std::sort(clouds.begin(), clouds.end());
     for (const fs::path& path : clouds) {
-      const CloudToModel input = read_cloud_to_model(path.string());
+      const results::CloudToModel input = results::read_cloud_to_model(path.string());
       const std::size_t tubes = input.scene->scene.tubes.size();
       const std::string folder = path.parent_path().parent_path().filename().string();
       auto& stock_seconds = stock[folder];

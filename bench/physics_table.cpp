@@ -21,16 +21,16 @@ struct Outcome {
   double drift = 0.0;
 };
 
-Outcome drop_scenes(int tube_count, int scene_count, const PhysicsOptions& options) {
+Outcome drop_scenes(int tube_count, int scene_count, const physics::PhysicsOptions& options) {
   Outcome outcome;
   for (int i = 0; i < scene_count; ++i) {
     Random random(derive_seed({1, static_cast<std::uint64_t>(i)}));
-    const std::vector<Tube> tubes = generate_tubes(tube_count, {}, random);
+    const std::vector<tube::Tube> tubes = tube::generate_tubes(tube_count, {}, random);
     const std::clock_t start = std::clock();
-    const DropResult drop = drop_tubes(tubes, Bin{}, options, random.bits());
+    const physics::DropResult drop = physics::drop_tubes(tubes, scene::Bin{}, options, random.bits());
     outcome.cpu_seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     outcome.steps += drop.figures.steps;
-    if (drop.failure != DropFailure::none) {
+    if (drop.failure != physics::DropFailure::none) {
       ++outcome.failures[to_string(drop.failure)];
       continue;
     }
@@ -41,7 +41,8 @@ Outcome drop_scenes(int tube_count, int scene_count, const PhysicsOptions& optio
   return outcome;
 }
 
-void print_row(const std::string& name, int tube_count, int scene_count, const PhysicsOptions& options, double base) {
+void print_row(const std::string& name, int tube_count, int scene_count, const physics::PhysicsOptions& options,
+               double base) {
   const Outcome o = drop_scenes(tube_count, scene_count, options);
   std::string failures;
   for (const auto& [reason, count] : o.failures)
@@ -62,27 +63,30 @@ int main(int argc, char** argv) {
              scene_count, unit * 1e3);
   fmt::print("| setting | good | failed | steps | time, defaults = 1 | deepest penetration, mm | mean drift, mm |\n");
   fmt::print("| --- | --- | --- | --- | --- | --- | --- |\n");
-  const auto row = [&](const std::string& name, const std::function<void(PhysicsOptions&)>& change) {
-    PhysicsOptions options;
+  const auto row = [&](const std::string& name, const std::function<void(physics::PhysicsOptions&)>& change) {
+    physics::PhysicsOptions options;
     change(options);
     print_row(name, tube_count, scene_count, options, unit);
   };
-  row("defaults", [](PhysicsOptions&) {});
+  row("defaults", [](physics::PhysicsOptions&) {});
   for (const double step : {0.002, 0.003, 0.005, 0.006})
-    row(fmt::format("time_step {}", step), [&](PhysicsOptions& o) { o.time_step = step; });
+    row(fmt::format("time_step {}", step), [&](physics::PhysicsOptions& o) { o.time_step = step; });
   for (const int iterations : {15, 60, 120})
-    row(fmt::format("solver_iterations {}", iterations), [&](PhysicsOptions& o) { o.solver_iterations = iterations; });
+    row(fmt::format("solver_iterations {}", iterations),
+        [&](physics::PhysicsOptions& o) { o.solver_iterations = iterations; });
   for (const double sor : {1.0, 1.3, 1.8})
-    row(fmt::format("solver_over_relaxation {}", sor), [&](PhysicsOptions& o) { o.solver_over_relaxation = sor; });
+    row(fmt::format("solver_over_relaxation {}", sor),
+        [&](physics::PhysicsOptions& o) { o.solver_over_relaxation = sor; });
   for (const double rolling : {0.0, 0.0002, 0.002})
-    row(fmt::format("rolling_resistance {}", rolling), [&](PhysicsOptions& o) { o.rolling_resistance = rolling; });
+    row(fmt::format("rolling_resistance {}", rolling),
+        [&](physics::PhysicsOptions& o) { o.rolling_resistance = rolling; });
   for (const double damping : {0.0, 0.05})
-    row(fmt::format("damping_angular {}", damping), [&](PhysicsOptions& o) { o.damping_angular = damping; });
+    row(fmt::format("damping_angular {}", damping), [&](physics::PhysicsOptions& o) { o.damping_angular = damping; });
   for (const double friction : {0.3, 0.6})
     row(fmt::format("friction_tube, friction_bin {}", friction),
-        [&](PhysicsOptions& o) { o.friction_tube = o.friction_bin = friction; });
+        [&](physics::PhysicsOptions& o) { o.friction_tube = o.friction_bin = friction; });
   for (const double erp : {0.05, 0.8})
-    row(fmt::format("contact_erp {}", erp), [&](PhysicsOptions& o) { o.contact_erp = erp; });
+    row(fmt::format("contact_erp {}", erp), [&](physics::PhysicsOptions& o) { o.contact_erp = erp; });
   for (const double layer : {0.00001, 0.0003})
-    row(fmt::format("contact_layer {}", layer), [&](PhysicsOptions& o) { o.contact_layer = layer; });
+    row(fmt::format("contact_layer {}", layer), [&](physics::PhysicsOptions& o) { o.contact_layer = layer; });
 }

@@ -23,11 +23,11 @@ using namespace tubebin;
 namespace fs = std::filesystem;
 
 /// What the published .world files say of bin and scanner.
-Scene published_scene(const std::string& path) {
-  Scene scene;
+scene::Scene published_scene(const std::string& path) {
+  scene::Scene scene;
   scene.bin = {.length = 0.80, .width = 0.60, .height = 0.20, .wall_thickness = 0.02};
   scene.scanner.range_max = 2.0;
-  scene.tubes = read_tubes_txt(path);
+  scene.tubes = scene::read_tubes_txt(path);
   return scene;
 }
 
@@ -38,18 +38,18 @@ std::string scene_name(const std::string& stem) {
   return fmt::format("{}/{:0>3}", stem.substr(0, underscore), stem.substr(underscore + 1));
 }
 
-SceneRecord rescan(const fs::path& file, const std::string& dataset) {
-  SceneRecord record;
+scene::SceneRecord rescan(const fs::path& file, const std::string& dataset) {
+  scene::SceneRecord record;
   record.id = scene_name(file.stem().string());
   record.scene = published_scene(file.string());
-  const Scan scanned = scan(record.scene);
+  const scan::Scan scanned = scan(record.scene);
   record.window = scanned.window;
   record.tube_pixels = scanned.tube_pixels;
-  record.colors = label_colors(record.scene.tubes.size());
+  record.colors = cloud::label_colors(record.scene.tubes.size());
   const std::string folder = dataset + "/" + record.id;
   fs::create_directories(folder);
-  write_cloud(folder + "/cloud.pcd", scanned.cloud, CloudFormat::pcd_compressed);
-  write_file_atomically(folder + "/scene.json", format_scene_json(record));
+  cloud::write_cloud(folder + "/cloud.pcd", scanned.cloud, cloud::CloudFormat::pcd_compressed);
+  write_file_atomically(folder + "/scene.json", scene::format_scene_json(record));
   return record;
 }
 
@@ -57,28 +57,28 @@ SceneRecord rescan(const fs::path& file, const std::string& dataset) {
 
 int main(int argc, char** argv) try {
   if (argc < 4) throw_config_error("usage: piles_table PUBLISHED RESCANNED DATASET...");
-  std::map<std::pair<std::string, int>, PileComparison> comparisons;
+  std::map<std::pair<std::string, int>, evaluation::PileComparison> comparisons;
   const auto comparison = [&](const std::string& id) -> PileComparison& {
-    const RunKey key = parse_scene_name(id);
-    PileComparison& found = comparisons[{key.set, key.tubes}];
+    const evaluation::RunKey key = evaluation::parse_scene_name(id);
+    evaluation::PileComparison& found = comparisons[{key.set, key.tubes}];
     found.name = fmt::format("{}{}", key.set, key.tubes);
     return found;
   };
   for (const auto& entry : fs::directory_iterator(argv[1])) {
     if (entry.path().extension() != ".txt") continue;
-    const SceneRecord record = rescan(entry.path(), argv[2]);
-    comparison(record.id).published.push_back(pile_statistics(record.scene, record.tube_pixels));
+    const scene::SceneRecord record = rescan(entry.path(), argv[2]);
+    comparison(record.id).published.push_back(evaluation::pile_statistics(record.scene, record.tube_pixels));
   }
   for (int i = 3; i < argc; ++i) {
-    const Manifest manifest(argv[i]);
+    const dataset::Manifest manifest(argv[i]);
     for (const auto& [id, unused] : manifest.records()) {
-      const SceneRecord record = read_scene_json(fmt::format("{}/{}/scene.json", argv[i], id));
-      comparison(id).here.push_back(pile_statistics(record.scene, record.tube_pixels));
+      const scene::SceneRecord record = scene::read_scene_json(fmt::format("{}/{}/scene.json", argv[i], id));
+      comparison(id).here.push_back(evaluation::pile_statistics(record.scene, record.tube_pixels));
     }
   }
-  std::vector<PileComparison> list;
+  std::vector<evaluation::PileComparison> list;
   for (const auto& [key, value] : comparisons) list.push_back(value);
-  fmt::print("{}", format_markdown(pile_table(list)));
+  fmt::print("{}", evaluation::format_markdown(evaluation::pile_table(list)));
   return 0;
 } catch (const std::exception& error) {
   fmt::print(stderr, "piles_table: {}\n", error.what());

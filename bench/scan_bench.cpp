@@ -10,27 +10,28 @@
 namespace tubebin {
 namespace {
 
-Scene scene_of(int tubes, ScanRegion region) {
-  Scene scene = testing::random_scene(tubes, 1);
+scene::Scene scene_of(int tubes, scene::ScanRegion region) {
+  scene::Scene scene = testing::random_scene(tubes, 1);
   scene.scanner.region = region;
   return scene;
 }
 
-void report_pixels(benchmark::State& state, const Scan& result) {
+void report_pixels(benchmark::State& state, const scan::Scan& result) {
   state.counters["rays"] = result.window.width * result.window.height;
   state.counters["rays/s"] =
       benchmark::Counter(result.window.width * result.window.height, benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void BM_BuildTree(benchmark::State& state) {
-  const Scene scene = scene_of(static_cast<int>(state.range(0)), ScanRegion::bin);
+  const scene::Scene scene = scene_of(static_cast<int>(state.range(0)), scene::ScanRegion::bin);
   for (auto _ : state)
-    benchmark::DoNotOptimize(RayCaster(scene_solids(scene), scene.scanner.range_min, scene.scanner.range_max));
+    benchmark::DoNotOptimize(
+        scan::RayCaster(scan::scene_solids(scene), scene.scanner.range_min, scene.scanner.range_max));
 }
 BENCHMARK(BM_BuildTree)->ArgName("tubes")->Arg(1)->Arg(10)->Arg(100)->Unit(benchmark::kMillisecond);
 
 void BM_ScanBinWindow(benchmark::State& state) {
-  const Scene scene = scene_of(static_cast<int>(state.range(0)), ScanRegion::bin);
+  const scene::Scene scene = scene_of(static_cast<int>(state.range(0)), scene::ScanRegion::bin);
   for (auto _ : state) benchmark::DoNotOptimize(scan(scene).cloud.points.data());
   report_pixels(state, scan(scene));
 }
@@ -46,14 +47,14 @@ BENCHMARK(BM_ScanBinWindow)
     ->Unit(benchmark::kMillisecond);
 
 void BM_ScanTubesAlone(benchmark::State& state) {
-  const Scene scene = scene_of(10, ScanRegion::tubes);
+  const scene::Scene scene = scene_of(10, scene::ScanRegion::tubes);
   for (auto _ : state) benchmark::DoNotOptimize(scan(scene).cloud.points.data());
   report_pixels(state, scan(scene));
 }
 BENCHMARK(BM_ScanTubesAlone)->Unit(benchmark::kMillisecond);
 
 void BM_ScanFullImage(benchmark::State& state) {
-  const Scene scene = scene_of(10, ScanRegion::full);
+  const scene::Scene scene = scene_of(10, scene::ScanRegion::full);
   for (auto _ : state) benchmark::DoNotOptimize(scan(scene).cloud.points.data());
   report_pixels(state, scan(scene));
 }
@@ -61,7 +62,7 @@ BENCHMARK(BM_ScanFullImage)->Unit(benchmark::kMillisecond);
 
 /// Every ray of the image meets the bin or a tube; the image grows.
 void BM_ScanPixels(benchmark::State& state) {
-  Scene scene = scene_of(10, ScanRegion::full);
+  scene::Scene scene = scene_of(10, scene::ScanRegion::full);
   const int width = static_cast<int>(state.range(0));
   testing::look_closely(scene.scanner, width, width * 5 / 8);
   scene.scanner.horizontal_fov_deg = 14.0;

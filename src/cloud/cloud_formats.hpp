@@ -6,7 +6,7 @@
 
 #include "tubebin/cloud/cloud_io.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 
 bool looks_like_pcd(std::string_view bytes);
 bool looks_like_ply(std::string_view bytes);
@@ -17,4 +17,4 @@ Cloud parse_ply(std::string_view bytes, const std::string& name, double scale);
 std::string format_pcd(const Cloud& cloud, CloudFormat format);
 std::string format_ply(const Cloud& cloud);
 
-}  // namespace tubebin
+}  // namespace tubebin::cloud

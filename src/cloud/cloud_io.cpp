@@ -8,7 +8,7 @@
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/text_scan.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 namespace {
 
 void check_consistent(const Cloud& cloud) {
@@ -43,4 +43,4 @@ Cloud parse_cloud(std::string_view bytes, const std::string& name, double scale)
 
 Cloud read_cloud(const std::string& path, double scale) { return parse_cloud(read_file(path), path, scale); }
 
-}  // namespace tubebin
+}  // namespace tubebin::cloud

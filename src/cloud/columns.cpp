@@ -12,7 +12,7 @@
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/text_scan.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 namespace {
 
 constexpr double kMaxUint32 = std::numeric_limits<std::uint32_t>::max();
@@ -214,4 +214,4 @@ CloudColumns AsciiRows::columns(const std::vector<double>& values) const {
   return columns;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::cloud

@@ -12,7 +12,7 @@
 #include "tubebin/cloud/cloud.hpp"
 #include "tubebin/core/text_scan.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 
 enum class ScalarType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 std::size_t size_of(ScalarType type);
@@ -67,4 +67,4 @@ struct AsciiRows {
   CloudColumns columns(const std::vector<double>& values) const;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::cloud

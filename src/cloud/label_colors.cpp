@@ -7,7 +7,7 @@
 
 #include "tubebin/core/error.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 namespace {
 
 constexpr Color kBinColor = 0x808080;
@@ -98,4 +98,4 @@ std::vector<Color> label_colors(std::size_t tube_count) {
   return sequence.first(tube_count);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::cloud

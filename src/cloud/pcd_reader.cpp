@@ -11,7 +11,7 @@
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/text_scan.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 namespace {
 
 struct Field {
@@ -303,4 +303,4 @@ Cloud parse_pcd(std::string_view bytes, const std::string& name, double scale) {
   return cloud;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::cloud

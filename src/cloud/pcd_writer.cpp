@@ -9,7 +9,7 @@
 #include "cloud/cloud_formats.hpp"
 #include "tubebin/core/error.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 namespace {
 
 static_assert(sizeof(Point) == 3 * sizeof(float) && sizeof(Color) == 4 && sizeof(Label) == 4);
@@ -136,4 +136,4 @@ std::string format_pcd(const Cloud& cloud, CloudFormat format) {
   return out;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::cloud

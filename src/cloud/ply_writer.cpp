@@ -6,7 +6,7 @@
 
 #include "cloud/cloud_formats.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
@@ -67,4 +67,4 @@ std::string format_ply(const Cloud& cloud) {
   return out;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::cloud

@@ -4,9 +4,10 @@
 #include <charconv>
 #include <set>
 
+#include "tubebin/core/version.hpp"
 #include "tubebin/render/preview.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 constexpr Limits kTubeCountLimits = {1, 10000};
@@ -36,7 +37,7 @@ void check_version(const DatasetConfig& config, const KeyPlaces& places) {
 }
 
 void check_preview(const DatasetConfig& config, const KeyPlaces& places) {
-  if (config.output.preview && !can_render())
+  if (config.output.preview && !render::can_render())
     places.fail("output.preview",
                 "'true' is not possible: OSMesa, which draws, is missing, or was when this was built");
 }
@@ -53,7 +54,7 @@ int parse_count(const std::string& text, const std::string& whole) {
   return value;
 }
 
-void describe_with_effects(Fields& fields, Scanner& scanner) {
+void describe_with_effects(Fields& fields, scene::Scanner& scanner) {
   describe(fields, scanner);
   fields.group("effects", "what a real scanner adds (docs/scanner_effects.md); all off: exact rays",
                [&](Fields& effects) { describe(effects, scanner.effects); });
@@ -61,7 +62,7 @@ void describe_with_effects(Fields& fields, Scanner& scanner) {
 
 /// What an element of the list does not say is as in `scanner`, which an included file may have set.
 void describe_scanners(Fields& fields, DatasetConfig& config) {
-  Scanner fresh = config.scanner;
+  scene::Scanner fresh = config.scanner;
   fields.list(
       "scanners", "several scanners or poses, merged into one cloud, instead of `scanner`", config.scanners.size(),
       [&](std::size_t size) { config.scanners.assign(size, config.scanner); },
@@ -74,8 +75,6 @@ void describe_scanners(Fields& fields, DatasetConfig& config) {
 }
 
 }  // namespace
-
-const char* tool_version() { return TUBEBIN_VERSION; }
 
 void describe(Fields& fields, DatasetConfig& config) {
   fields.text("tool_version", config.tool_version,
@@ -149,13 +148,13 @@ std::string document_shapes() {
       "of `tube` beside `name`, `count` and `share`.\n\n"
       "`scanners` makes one cloud of several scanners. It stands instead of `scanner`, and each of its elements has the\n"
       "keys of `scanner`; what it leaves out is as in the `scanner` of an included file.\n";
-  for (const std::string& name : shape_names()) {
-    TubeOptions options;
-    options.shape = ShapeChoice(name);
+  for (const std::string& name : tube::shape_names()) {
+    tube::TubeOptions options;
+    options.shape = tube::ShapeChoice(name);
     const auto describe_own = [&](Fields& fields) {
       fields.group("tube", "", [&](Fields& inner) { options.shape->describe(inner, options); });
     };
-    if (name == ShapeChoice().name()) continue;
+    if (name == tube::ShapeChoice().name()) continue;
     text += fmt::format("\n### {}\n\n", name);
     text += list_fields(describe_own).empty() ? "No keys of its own.\n" : document_fields(describe_own);
   }
@@ -222,4 +221,4 @@ std::vector<int> parse_tube_counts(const std::string& text) {
   return counts;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

@@ -5,7 +5,7 @@
 
 #include "tubebin/core/atomic_file.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,13 +75,14 @@ DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& con
   if (!manifest_.damaged_lines().empty()) manifest_.rewrite_without({});  // their scenes are made anew
 }
 
-DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& config, const Shard& shard, Part part)
+DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& config, const jobs::Shard& shard,
+                             Part part)
     : folder_(make_folder(folder)),
       part_(list_scenes(config, shard)),
-      lock_(folder_, FolderLock::Kind::part),
+      lock_(folder_, jobs::FolderLock::Kind::part),
       config_(settle_config(folder_, config)),
       store_(folder_, config_.output),
-      pack_lock_(part == Part::packed ? std::make_unique<FolderLock>(make_folder(parts_folder(folder_)), shard)
+      pack_lock_(part == Part::packed ? std::make_unique<jobs::FolderLock>(make_folder(parts_folder(folder_)), shard)
                                       : nullptr),
       manifest_(folder_, shard, *part_) {
   remove_unfinished();
@@ -103,4 +104,4 @@ bool DatasetFolder::is_complete(const std::string& scene_name) const {
   return record != nullptr && store_.has(*record);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

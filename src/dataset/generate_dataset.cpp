@@ -8,7 +8,7 @@
 #include "scene_packer.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -16,9 +16,9 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 /// In a worker process: one attempt at a scene, whose folder is complete when `finish` has returned.
-AttemptResult make_scene(const DatasetFolder& folder, const SceneId& id, int attempt) {
+jobs::AttemptResult make_scene(const DatasetFolder& folder, const SceneId& id, int attempt) {
   GeneratedScene scene = generate_scene(folder.config(), id, attempt);
-  if (!scene.failure.empty()) return failed_attempt(scene.failure, scene.failure_detail);
+  if (!scene.failure.empty()) return jobs::failed_attempt(scene.failure, scene.failure_detail);
 
   ManifestRecord record{.id = id.name(),
                         .tubes = id.tubes,
@@ -30,7 +30,7 @@ AttemptResult make_scene(const DatasetFolder& folder, const SceneId& id, int att
   const auto start = std::chrono::steady_clock::now();
   const auto complete = folder.store().begin_write(record.id, scene.content);
   record.seconds["write"] = seconds_since(start);
-  return successful_attempt([complete, record]() mutable {
+  return jobs::successful_attempt([complete, record]() mutable {
     const auto wait_start = std::chrono::steady_clock::now();
     record.files = complete();
     record.seconds["wait_for_disk"] = seconds_since(wait_start);
@@ -38,17 +38,17 @@ AttemptResult make_scene(const DatasetFolder& folder, const SceneId& id, int att
   });
 }
 
-std::string describe_failure(const SceneId& id, const JobOutcome& outcome) {
+std::string describe_failure(const SceneId& id, const jobs::JobOutcome& outcome) {
   std::map<std::string, int> reasons;
-  for (const FailedAttempt& attempt : outcome.failed) ++reasons[attempt.reason];
+  for (const jobs::FailedAttempt& attempt : outcome.failed) ++reasons[attempt.reason];
   std::vector<std::string> parts;
   for (const auto& [reason, count] : reasons) parts.push_back(fmt::format("{} {}", count, reason));
-  const FailedAttempt& last = outcome.failed.back();
+  const jobs::FailedAttempt& last = outcome.failed.back();
   return fmt::format("{}: given up after {} attempts ({}); last: {}", id.name(), outcome.failed.size(),
                      fmt::join(parts, ", "), last.for_people());
 }
 
-void record_scene(DatasetFolder& folder, const JobOutcome& outcome) {
+void record_scene(DatasetFolder& folder, const jobs::JobOutcome& outcome) {
   ManifestRecord record = parse_manifest_record(outcome.text);
   record.rejected = outcome.failed;
   record.seconds["total"] = outcome.seconds;
@@ -63,7 +63,7 @@ std::size_t GenerationReport::rejects_total() const {
 }
 
 GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<SceneId>& scenes, int jobs,
-                                  Progress::Style progress_style, const std::string& pack) {
+                                  jobs::Progress::Style progress_style, const std::string& pack) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < scenes.size(); ++i)
@@ -73,27 +73,27 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
   report.complete_before = scenes.size() - missing.size();
   std::optional<ScenePacker> packer;
   if (!pack.empty()) packer.emplace(folder, scenes, pack);
-  Progress progress(missing.size(), "scenes", progress_style);
-  const PoolEvents events{.on_finished =
-                              [&](const JobOutcome& outcome) {
-                                if (outcome.succeeded) record_scene(folder, outcome);
-                                else report.failed.push_back(describe_failure(scenes[outcome.job], outcome));
-                                if (packer && outcome.succeeded) packer->add(outcome.job);
-                                else if (packer) packer->give_up(outcome.job);
-                                progress.count_done();
-                              },
-                          .on_failed_attempt =
-                              [&](std::size_t, const FailedAttempt& attempt) {
-                                ++report.rejects[attempt.reason];
-                                progress.count_reject();
-                              },
-                          .on_tick = [&] { progress.show(); }};
-  const PoolOptions options{.workers = jobs,
-                            .attempts_max = folder.config().attempts_max,
-                            .attempt_time_limit = folder.config().attempt_time_limit};
+  jobs::Progress progress(missing.size(), "scenes", progress_style);
+  const jobs::PoolEvents events{.on_finished =
+                                    [&](const jobs::JobOutcome& outcome) {
+                                      if (outcome.succeeded) record_scene(folder, outcome);
+                                      else report.failed.push_back(describe_failure(scenes[outcome.job], outcome));
+                                      if (packer && outcome.succeeded) packer->add(outcome.job);
+                                      else if (packer) packer->give_up(outcome.job);
+                                      progress.count_done();
+                                    },
+                                .on_failed_attempt =
+                                    [&](std::size_t, const jobs::FailedAttempt& attempt) {
+                                      ++report.rejects[attempt.reason];
+                                      progress.count_reject();
+                                    },
+                                .on_tick = [&] { progress.show(); }};
+  const jobs::PoolOptions options{.workers = jobs,
+                                  .attempts_max = folder.config().attempts_max,
+                                  .attempt_time_limit = folder.config().attempt_time_limit};
   const auto work = [&](std::size_t job, int attempt) { return make_scene(folder, scenes[job], attempt); };
 
-  const PoolReport pool = run_jobs(missing, options, work, events);
+  const jobs::PoolReport pool = jobs::run_jobs(missing, options, work, events);
   if (packer) packer->finish(pool.signal == 0);
   report.signal = pool.signal;
   report.made = pool.succeeded;
@@ -101,4 +101,4 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
   return report;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

@@ -8,14 +8,14 @@
 #include "tubebin/scan/scanner.hpp"
 #include "tubebin/scan/visibility.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 constexpr int kPreviewWidth = 1280;
 constexpr int kPreviewHeight = 960;
 
-std::string png(const Image& image) {
-  const std::vector<std::uint8_t> bytes = encode_png(image);
+std::string png(const render::Image& image) {
+  const std::vector<std::uint8_t> bytes = render::encode_png(image);
   return {bytes.begin(), bytes.end()};
 }
 
@@ -34,15 +34,17 @@ class StageClock {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-bool has_point(const Cloud& cloud) { return std::any_of(cloud.points.begin(), cloud.points.end(), is_finite); }
+bool has_point(const cloud::Cloud& cloud) {
+  return std::any_of(cloud.points.begin(), cloud.points.end(), cloud::is_finite);
+}
 
 }  // namespace
 
-PileRelations relate_pile(const Scene& scene) {
-  PileView view = view_pile(scene);
+scene::PileRelations relate_pile(const scene::Scene& scene) {
+  scan::PileView view = scan::view_pile(scene);
   return {.amodal_pixels = std::move(view.amodal_pixels),
           .occlusions = std::move(view.occlusions),
-          .above = find_above(scene.tubes)};
+          .above = scene::find_above(scene.tubes)};
 }
 
 std::uint64_t attempt_seed(const DatasetConfig& config, const SceneId& id, int attempt) {
@@ -57,25 +59,26 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
   StageClock clock(result.seconds);
   Random random(attempt_seed(config, id, attempt));
 
-  const std::vector<Tube> tubes = config.kinds.empty() ? generate_tubes(id.tubes, config.tube, random)
-                                                       : generate_mixed_tubes(id.tubes, config.kinds, random);
+  const std::vector<tube::Tube> tubes = config.kinds.empty()
+                                            ? tube::generate_tubes(id.tubes, config.tube, random)
+                                            : tube::generate_mixed_tubes(id.tubes, config.kinds, random);
   clock.end_stage("build");
 
-  DropResult drop = drop_tubes(tubes, config.bin, config.physics, random.bits());
+  physics::DropResult drop = physics::drop_tubes(tubes, config.bin, config.physics, random.bits());
   clock.end_stage("drop");
   result.physics = drop.figures;
-  if (drop.failure != DropFailure::none) {
+  if (drop.failure != physics::DropFailure::none) {
     result.failure = to_string(drop.failure);
     result.failure_detail = drop.detail;
     return result;
   }
 
-  const std::vector<Scanner> scanners = config.all_scanners();
-  const Scene scene{.bin = config.bin,
-                    .scanner = scanners.front(),
-                    .tubes = std::move(drop.tubes),
-                    .further_scanners = {scanners.begin() + 1, scanners.end()}};
-  MergedScan scanned = scan_from_all(scene, attempt_seed(config, id, attempt));
+  const std::vector<scene::Scanner> scanners = config.all_scanners();
+  const scene::Scene scene{.bin = config.bin,
+                           .scanner = scanners.front(),
+                           .tubes = std::move(drop.tubes),
+                           .further_scanners = {scanners.begin() + 1, scanners.end()}};
+  scan::MergedScan scanned = scan::scan_from_all(scene, attempt_seed(config, id, attempt));
   clock.end_stage("scan");
   if (!has_point(scanned.cloud)) {
     result.failure = "unseen";
@@ -85,27 +88,27 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
         scanners.front().range_min, scanners.front().range_max);
     return result;
   }
-  PileRelations relations = relate_pile(scene);
+  scene::PileRelations relations = relate_pile(scene);
   clock.end_stage("relate");
 
   result.content.record = {.id = id.name(),
                            .seed = attempt_seed(config, id, attempt),
                            .scene = scene,
                            .window = scanned.window,
-                           .colors = label_colors(scene.tubes.size()),
+                           .colors = cloud::label_colors(scene.tubes.size()),
                            .tube_pixels = std::move(scanned.tube_pixels),
                            .contacts = std::move(drop.contacts),
                            .further_windows = std::move(scanned.further_windows),
                            .relations = std::move(relations)};
   result.content.cloud = std::move(scanned.cloud);
-  if (config.output.clean_cloud) result.content.clean_cloud = scan_exactly_from_all(scene).cloud;
+  if (config.output.clean_cloud) result.content.clean_cloud = scan::scan_exactly_from_all(scene).cloud;
 
   if (config.output.preview) {
-    result.content.images["preview.png"] = png(render_preview(scene, kPreviewWidth, kPreviewHeight));
-    result.content.images["ground_truth.png"] = png(render_labels(scene, scanned.window));
+    result.content.images["preview.png"] = png(render::render_preview(scene, kPreviewWidth, kPreviewHeight));
+    result.content.images["ground_truth.png"] = png(render::render_labels(scene, scanned.window));
     clock.end_stage("preview");
   }
   return result;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

@@ -1,7 +1,6 @@
 #include "tubebin/dataset/manifest.hpp"
 
 #include <fcntl.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -9,23 +8,23 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "append_line.hpp"
 #include "core/file_descriptor.hpp"
+#include "jobs/append_line.hpp"
 #include "tubebin/core/atomic_file.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const DropFigures& figures) {
+Json to_json(const physics::DropFigures& figures) {
   return {{"steps", figures.steps},
           {"simulated_seconds", figures.simulated_seconds},
           {"deepest_penetration", figures.deepest_penetration},
           {"largest_drift", figures.largest_drift}};
 }
 
-DropFigures physics_from(const Json& json) {
+physics::DropFigures physics_from(const Json& json) {
   return {.steps = json.at("steps"),
           .simulated_seconds = json.at("simulated_seconds"),
           .deepest_penetration = json.at("deepest_penetration"),
@@ -63,7 +62,7 @@ std::string make_part(const std::string& folder, const std::string& part) {
 
 std::string format_manifest_record(const ManifestRecord& record) {
   Json rejected = Json::array();
-  for (const FailedAttempt& attempt : record.rejected)
+  for (const jobs::FailedAttempt& attempt : record.rejected)
     rejected.push_back({{"attempt", attempt.attempt}, {"reason", attempt.reason}, {"detail", attempt.detail}});
   Json files = Json::object();
   for (const auto& [name, file] : record.files) files[name] = {{"bytes", file.bytes}, {"xxh128", file.xxh128}};
@@ -97,11 +96,6 @@ ManifestRecord parse_manifest_record(const std::string& line) {
   return record;
 }
 
-FileRecord record_bytes(std::string_view bytes) {
-  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
-  return {.bytes = bytes.size(), .xxh128 = fmt::format("{:016x}{:016x}", hash.high64, hash.low64)};
-}
-
 std::string parts_folder(const std::string& dataset) { return dataset + "/manifest.parts"; }
 
 Manifest::Manifest(const std::string& folder) : folder_(folder), path_(folder + "/manifest.jsonl") {
@@ -109,7 +103,7 @@ Manifest::Manifest(const std::string& folder) : folder_(folder), path_(folder + 
   for (const std::string& part : list_parts(folder)) read(part, nullptr);
 }
 
-Manifest::Manifest(const std::string& folder, const Shard& shard, const std::vector<SceneId>& scenes)
+Manifest::Manifest(const std::string& folder, const jobs::Shard& shard, const std::vector<SceneId>& scenes)
     : folder_(folder), part_name_(shard.name()) {
   std::set<std::string> wanted;
   for (const SceneId& id : scenes) wanted.insert(id.name());
@@ -146,7 +140,7 @@ const ManifestRecord* Manifest::find(const std::string& id) const {
 void Manifest::append(const ManifestRecord& record) {
   if (path_.empty()) path_ = make_part(folder_, part_name_);
   complete_bytes_ =
-      append_line(path_, part_name_.empty() ? O_CREAT : 0, complete_bytes_, format_manifest_record(record));
+      jobs::append_line(path_, part_name_.empty() ? O_CREAT : 0, complete_bytes_, format_manifest_record(record));
   records_[record.id] = record;
 }
 
@@ -179,4 +173,4 @@ void Manifest::replace_all(const std::string& text) {
   damaged_lines_.clear();
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

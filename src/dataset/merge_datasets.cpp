@@ -11,11 +11,11 @@
 #include "scene_check.hpp"
 #include "tubebin/core/shell_word.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
-#include "tubebin/dataset/whole_folder.hpp"
-#include "tubebin/dataset/worker_pool.hpp"
+#include "tubebin/jobs/atomic_folder.hpp"
+#include "tubebin/jobs/worker_pool.hpp"
 #include "tubebin/scene/dataset_files.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 struct MergeSource {
   std::string folder;
   const Manifest* manifest;
-  DatasetFiles files;
+  scene::DatasetFiles files;
 };
 
 DatasetConfig unite_configs(const std::vector<std::string>& folders) {
@@ -55,31 +55,31 @@ class Merge {
  public:
   Merge(DatasetFolder& output, const std::vector<std::string>& folders)
       : output_(output), scenes_(list_scenes(output.config())) {
-    sources_.push_back({output.store().folder(), &output.manifest(), DatasetFiles(output.store().folder())});
+    sources_.push_back({output.store().folder(), &output.manifest(), scene::DatasetFiles(output.store().folder())});
     for (const std::string& folder : folders) {
       manifests_.push_back(std::make_unique<Manifest>(folder));
-      sources_.push_back({folder, manifests_.back().get(), DatasetFiles(folder)});
+      sources_.push_back({folder, manifests_.back().get(), scene::DatasetFiles(folder)});
     }
   }
 
-  MergeReport run(int jobs, Progress::Style progress_style) {
+  MergeReport run(int jobs, jobs::Progress::Style progress_style) {
     report_.scenes = scenes_.size();
     std::vector<std::size_t> recorded;
     for (std::size_t i = 0; i < scenes_.size(); ++i) {
       if (is_recorded(scenes_[i].name())) recorded.push_back(i);
       else report_.missing.push_back(scenes_[i].name());
     }
-    Progress progress(recorded.size(), "scenes", progress_style);
-    const PoolEvents events{.on_finished =
-                                [&](const JobOutcome& outcome) {
-                                  take_outcome(scenes_[outcome.job].name(), outcome);
-                                  progress.count_done();
-                                },
-                            .on_tick = [&] { progress.show(); }};
-    const PoolOptions options{
+    jobs::Progress progress(recorded.size(), "scenes", progress_style);
+    const jobs::PoolEvents events{.on_finished =
+                                      [&](const jobs::JobOutcome& outcome) {
+                                        take_outcome(scenes_[outcome.job].name(), outcome);
+                                        progress.count_done();
+                                      },
+                                  .on_tick = [&] { progress.show(); }};
+    const jobs::PoolOptions options{
         .workers = jobs, .attempts_max = 1, .attempt_time_limit = output_.config().attempt_time_limit};
     const auto work = [&](std::size_t job, int) { return take_scene(scenes_[job].name()); };
-    report_.signal = run_jobs(recorded, options, work, events).signal;
+    report_.signal = jobs::run_jobs(recorded, options, work, events).signal;
     if (report_.signal == 0) conclude();
     return report_;
   }
@@ -91,7 +91,7 @@ class Merge {
 
   /// In a worker process: the first source that has the scene sound gives it to the output. Its number and what is
   /// wrong with others are the result.
-  AttemptResult take_scene(const std::string& scene) const {
+  jobs::AttemptResult take_scene(const std::string& scene) const {
     std::vector<std::string> problems;
     std::optional<std::size_t> taken;
     for (std::size_t k = 0; k < sources_.size(); ++k) {
@@ -105,8 +105,8 @@ class Merge {
         problems.push_back(fmt::format("{}/{}: {}", sources_[k].folder, scene, problem));
     }
     std::string text = fmt::format("{}\n{}", taken ? std::to_string(*taken) : "none", fmt::join(problems, "\n"));
-    if (!taken || *taken == 0 || is_packed(*taken, scene)) return successful_attempt(text);
-    return successful_attempt([text, arrive = link_scene(*taken, scene)] {
+    if (!taken || *taken == 0 || is_packed(*taken, scene)) return jobs::successful_attempt(text);
+    return jobs::successful_attempt([text, arrive = link_scene(*taken, scene)] {
       arrive();
       return text;
     });
@@ -120,10 +120,10 @@ class Merge {
     std::map<std::string, std::string> links;
     for (const auto& [name, file] : sources_[source].manifest->find(scene)->files)
       links[name] = sources_[source].folder + "/" + scene + "/" + name;
-    return begin_linked_folder(output_.store().path(scene), links);
+    return jobs::begin_linked_folder(output_.store().path(scene), links);
   }
 
-  void take_outcome(const std::string& scene, const JobOutcome& outcome) {
+  void take_outcome(const std::string& scene, const jobs::JobOutcome& outcome) {
     if (!outcome.succeeded) {
       report_.problems.push_back(fmt::format("{}: could not be checked: {}", scene, outcome.failed.back().detail));
       return;
@@ -157,9 +157,9 @@ class Merge {
     if (!is_new) return;
     for (const auto& [scene, record] : output_.manifest().records())  // of an earlier merge, or of another pack?
       if (record.pack == pack && !has_in_pack(source, record)) refuse(0);
-    const std::string folder = packs_folder(output_.store().folder());
+    const std::string folder = scene::packs_folder(output_.store().folder());
     fs::create_directories(folder);
-    link_file(packs_folder(sources_[source].folder) + "/" + pack, folder + "/" + pack);
+    jobs::link_file(scene::packs_folder(sources_[source].folder) + "/" + pack, folder + "/" + pack);
   }
 
   bool has_in_pack(std::size_t source, const ManifestRecord& record) const {
@@ -194,7 +194,7 @@ class Merge {
 }  // namespace
 
 MergeReport merge_datasets(const std::string& output, const std::vector<std::string>& folders, int jobs,
-                           Progress::Style progress) try {
+                           jobs::Progress::Style progress) try {
   const std::vector<std::string> others = other_folders(output, folders);
   DatasetFolder folder(output, unite_configs(others.empty() ? std::vector{output} : others));
   return Merge(folder, others).run(jobs, progress);
@@ -202,4 +202,4 @@ MergeReport merge_datasets(const std::string& output, const std::vector<std::str
   throw_io_error("{}", error.what());
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

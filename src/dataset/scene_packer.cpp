@@ -11,7 +11,7 @@
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/scene/dataset_files.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,7 +25,7 @@ ScenePacker::ScenePacker(DatasetFolder& folder, const std::vector<SceneId>& scen
     : folder_(folder),
       scenes_(scenes),
       name_(name + ".tar"),
-      path_(packs_folder(folder.store().folder()) + "/" + name_),
+      path_(scene::packs_folder(folder.store().folder()) + "/" + name_),
       states_(scenes.size(), State::awaited) {
   for (const auto& [id, record] : folder.manifest().records())
     if (record.pack == name_) end_ = std::max(end_, record.pack_end);
@@ -67,7 +67,8 @@ void ScenePacker::pack_those_in_turn() {
 void ScenePacker::append(const SceneId& id) {
   ManifestRecord record = *folder_.manifest().find(id.name());
   for (const auto& [file, expected] : record.files)
-    write(format_tar_member(packed_name(record.id, file), read_file(folder_.store().path(record.id) + "/" + file)));
+    write(format_tar_member(scene::packed_name(record.id, file),
+                            read_file(folder_.store().path(record.id) + "/" + file)));
   record.pack = name_;
   record.pack_end = end_;
   unrecorded_.push_back(std::move(record));
@@ -100,4 +101,4 @@ void ScenePacker::write(std::string_view bytes) {
   }
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

@@ -6,7 +6,7 @@
 #include "core/file_descriptor.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 
 /// Moves complete scenes from their folders into one tar, in the order of the list whatever the order in which they are
 /// made, so that the tar's bytes are always the same (but for scenes that were given up and made later, which follow).
@@ -42,4 +42,4 @@ class ScenePacker {
   std::vector<ManifestRecord> unrecorded_;  ///< written, and not known to be on the disk
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

@@ -5,24 +5,25 @@
 #include <filesystem>
 #include <set>
 
-#include "tubebin/dataset/whole_folder.hpp"
+#include "tubebin/core/file_record.hpp"
+#include "tubebin/jobs/atomic_folder.hpp"
 #include "tubebin/scene/dataset_files.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 namespace fs = std::filesystem;
 
-bool same_point(const Point& a, const Point& b) {
+bool same_point(const cloud::Point& a, const cloud::Point& b) {
   for (int i = 0; i < 3; ++i)
     if (a[i] != b[i] && !(std::isnan(a[i]) && std::isnan(b[i]))) return false;
   return true;
 }
 
 /// Compressors have written files before that nothing could read.
-void check_reads_back(const std::string& bytes, const Cloud& cloud, const std::string& path) {
-  const Cloud read = parse_cloud(bytes, path);
+void check_reads_back(const std::string& bytes, const cloud::Cloud& cloud, const std::string& path) {
+  const cloud::Cloud read = cloud::parse_cloud(bytes, path);
   if (read.points.empty() && cloud.points.empty()) return;  // files have no unique form of no points
   if (read.width != cloud.width || read.height != cloud.height || read.colors != cloud.colors ||
       read.labels != cloud.labels || read.sources != cloud.sources ||
@@ -39,13 +40,13 @@ std::string SceneStore::clean_cloud_name() const { return std::string("cloud_cle
 std::function<std::map<std::string, FileRecord>()> SceneStore::begin_write(const std::string& scene_name,
                                                                            const SceneContent& content) const {
   std::map<std::string, std::string> files = content.images;
-  files[cloud_name()] = format_cloud(content.cloud, options_.format);
-  if (content.clean_cloud) files[clean_cloud_name()] = format_cloud(*content.clean_cloud, options_.format);
-  files["scene.json"] = format_scene_json(content.record);
-  files["tubes.txt"] = format_tubes_txt(content.record.scene.tubes);
+  files[cloud_name()] = cloud::format_cloud(content.cloud, options_.format);
+  if (content.clean_cloud) files[clean_cloud_name()] = cloud::format_cloud(*content.clean_cloud, options_.format);
+  files["scene.json"] = scene::format_scene_json(content.record);
+  files["tubes.txt"] = scene::format_tubes_txt(content.record.scene.tubes);
 
-  const std::function<void()> finish = begin_whole_folder(path(scene_name), files);
-  if (options_.format == CloudFormat::pcd_compressed) {
+  const std::function<void()> finish = jobs::begin_whole_folder(path(scene_name), files);
+  if (options_.format == cloud::CloudFormat::pcd_compressed) {
     check_reads_back(files[cloud_name()], content.cloud, path(scene_name) + "/" + cloud_name());
     if (content.clean_cloud)
       check_reads_back(files[clean_cloud_name()], *content.clean_cloud, path(scene_name) + "/" + clean_cloud_name());
@@ -61,7 +62,7 @@ std::function<std::map<std::string, FileRecord>()> SceneStore::begin_write(const
 bool SceneStore::has(const ManifestRecord& record) const {
   if (!record.pack.empty()) {
     std::error_code error;
-    const std::uintmax_t bytes = fs::file_size(packs_folder(folder_) + "/" + record.pack, error);
+    const std::uintmax_t bytes = fs::file_size(scene::packs_folder(folder_) + "/" + record.pack, error);
     return !error && bytes >= record.pack_end;
   }
   return std::all_of(record.files.begin(), record.files.end(), [&](const auto& entry) {
@@ -78,7 +79,7 @@ void SceneStore::remove_unfinished(const std::vector<SceneId>& scenes, Unfinishe
   }
   for (const auto& [parent, own] : names)
     if (fs::is_directory(parent))
-      remove_unfinished_folders(parent.string(), which == Unfinished::only ? own : std::set<std::string>{});
+      jobs::remove_unfinished_folders(parent.string(), which == Unfinished::only ? own : std::set<std::string>{});
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

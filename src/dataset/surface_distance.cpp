@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 /// Of a convex body from how far a point is beyond each of its bounds (negative: short of it).
@@ -16,10 +16,10 @@ double distance_from_bounds(const Vector& beyond) {
 
 }  // namespace
 
-BodySurface::BodySurface(const PlacedTube& placed) {
+BodySurface::BodySurface(const scene::PlacedTube& placed) {
   const double wall = placed.tube.wall_thickness;
   const auto bore_radius = [&](double radius) { return wall > 0.0 ? radius - wall : 0.0; };
-  for (const Cylinder& cylinder : placed.tube.cylinders) {
+  for (const tube::Cylinder& cylinder : placed.tube.cylinders) {
     const Vec3 a = placed.node_in_world(cylinder.node_a);
     const Vec3 b = placed.node_in_world(cylinder.node_b);
     const double radius = placed.tube.radius_of(cylinder);
@@ -53,9 +53,9 @@ double BodySurface::distance(const Vec3& point) const {
     nearest = std::min(nearest, std::abs(from_center - sphere.radius));
     if (sphere.bore_radius > 0.0) nearest = std::min(nearest, std::abs(from_center - sphere.bore_radius));
   }
-  for (const Box& box : boxes_)
+  for (const scene::Box& box : boxes_)
     nearest = std::min(nearest, distance_from_bounds(Vec3((point - box.center()).cwiseAbs() - box.sizes() / 2.0)));
   return nearest;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

@@ -6,13 +6,13 @@
 
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 
 /// The surfaces of one body: a tube's cylinders and joint spheres, outside and in its bore, or the bin's boxes.
 class BodySurface {
  public:
-  explicit BodySurface(const PlacedTube& tube);
-  explicit BodySurface(const Bin& bin) : boxes_(bin_boxes(bin)) {}
+  explicit BodySurface(const scene::PlacedTube& tube);
+  explicit BodySurface(const scene::Bin& bin) : boxes_(scene::bin_boxes(bin)) {}
 
   /// Metres to the nearest of the body's surfaces, from whichever side.
   double distance(const Vec3& point) const;
@@ -32,7 +32,7 @@ class BodySurface {
   };
   std::vector<CappedCylinder> cylinders_;
   std::vector<Sphere> spheres_;
-  std::vector<Box> boxes_;
+  std::vector<scene::Box> boxes_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

@@ -1,24 +1,14 @@
 #include "tubebin/dataset/timing_table.hpp"
 
 #include <map>
-#include <optional>
 
-#include "tubebin/evaluation/paper_figures.hpp"
-
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 struct Mean {
   double sum = 0.0;
   int count = 0;
 };
-
-/// Table 1 of the paper, for its sets A and B.
-std::optional<double> paper_seconds(const std::string& set, int tubes) {
-  const auto of_set = paper_figures().generation_seconds.find(set);
-  if (of_set == paper_figures().generation_seconds.end() || !of_set->second.contains(tubes)) return std::nullopt;
-  return of_set->second.at(tubes);
-}
 
 std::map<int, Mean> mean_seconds(const Manifest& manifest, const std::vector<SceneId>& scenes) {
   std::map<int, Mean> means;
@@ -34,7 +24,8 @@ std::map<int, Mean> mean_seconds(const Manifest& manifest, const std::vector<Sce
 
 }  // namespace
 
-std::string format_timing_table(const Manifest& manifest, const std::vector<SceneId>& scenes) {
+std::string format_timing_table(const Manifest& manifest, const std::vector<SceneId>& scenes,
+                                const SecondsByTubes& paper_seconds) {
   const std::map<int, Mean> means = mean_seconds(manifest, scenes);
   if (means.empty()) return "";
   const std::string& set = scenes.front().set;
@@ -46,11 +37,11 @@ std::string format_timing_table(const Manifest& manifest, const std::vector<Scen
   for (const auto& [tubes, mean] : means) {
     const double here = mean.sum / mean.count;
     text += fmt::format("{:>6} {:>7} {:>9.3f}", tubes, mean.count, here);
-    if (const std::optional<double> paper = paper_seconds(set, tubes))
-      text += fmt::format(" {:>9.2f} {:>8.0f}x\n", *paper, *paper / here);
+    if (const auto paper = paper_seconds.find(tubes); paper != paper_seconds.end())
+      text += fmt::format(" {:>9.2f} {:>8.0f}x\n", paper->second, paper->second / here);
     else text += fmt::format(" {:>9} {:>9}\n", "-", "-");
   }
   return text;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

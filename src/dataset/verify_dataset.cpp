@@ -5,14 +5,14 @@
 #include <set>
 #include <sstream>
 
-#include "tubebin/dataset/worker_pool.hpp"
+#include "tubebin/jobs/worker_pool.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
-AttemptResult check_scene(const DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
-                          const ManifestRecord& record) {
-  return successful_attempt(fmt::format("{}", fmt::join(verify_scene(files, config, id, record), "\n")));
+jobs::AttemptResult check_scene(const scene::DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
+                                const ManifestRecord& record) {
+  return jobs::successful_attempt(fmt::format("{}", fmt::join(verify_scene(files, config, id, record), "\n")));
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -27,7 +27,7 @@ void add_damaged(VerificationReport& report, const SceneId& id, const std::vecto
   for (const std::string& problem : problems) report.problems.push_back(id.name() + ": " + problem);
 }
 
-void add_outcome(VerificationReport& report, const SceneId& id, const JobOutcome& outcome) {
+void add_outcome(VerificationReport& report, const SceneId& id, const jobs::JobOutcome& outcome) {
   ++report.checked;
   if (!outcome.succeeded)
     add_damaged(report, id, {fmt::format("could not be checked: {}", outcome.failed.back().detail)});
@@ -36,11 +36,11 @@ void add_outcome(VerificationReport& report, const SceneId& id, const JobOutcome
 
 }  // namespace
 
-VerificationReport verify_dataset(const std::string& folder, int jobs, Progress::Style progress_style) {
-  const FolderLock lock(folder, FolderLock::Kind::shared);
+VerificationReport verify_dataset(const std::string& folder, int jobs, jobs::Progress::Style progress_style) {
+  const jobs::FolderLock lock(folder, jobs::FolderLock::Kind::shared);
   const DatasetConfig config = read_dataset_config(folder);
   const Manifest manifest(folder);
-  const DatasetFiles files(folder);
+  const scene::DatasetFiles files(folder);
   VerificationReport report;
   report.problems = manifest.damaged_lines();
 
@@ -53,18 +53,18 @@ VerificationReport verify_dataset(const std::string& folder, int jobs, Progress:
     else ++report.missing;
   }
 
-  Progress progress(recorded.size(), "scenes", progress_style);
-  const PoolEvents events{.on_finished =
-                              [&](const JobOutcome& outcome) {
-                                add_outcome(report, scenes[outcome.job], outcome);
-                                progress.count_done();
-                              },
-                          .on_tick = [&] { progress.show(); }};
+  jobs::Progress progress(recorded.size(), "scenes", progress_style);
+  const jobs::PoolEvents events{.on_finished =
+                                    [&](const jobs::JobOutcome& outcome) {
+                                      add_outcome(report, scenes[outcome.job], outcome);
+                                      progress.count_done();
+                                    },
+                                .on_tick = [&] { progress.show(); }};
   const auto work = [&](std::size_t job, int) {
     return check_scene(files, config, scenes[job], *manifest.find(scenes[job].name()));
   };
-  const PoolOptions options{.workers = jobs, .attempts_max = 1, .attempt_time_limit = config.attempt_time_limit};
-  report.signal = run_jobs(recorded, options, work, events).signal;
+  const jobs::PoolOptions options{.workers = jobs, .attempts_max = 1, .attempt_time_limit = config.attempt_time_limit};
+  report.signal = jobs::run_jobs(recorded, options, work, events).signal;
   std::sort(report.problems.begin(), report.problems.end());
   std::sort(report.damaged.begin(), report.damaged.end());
   return report;
@@ -76,4 +76,4 @@ void forget_damage(DatasetFolder& folder, const VerificationReport& report) {
   folder.manifest().rewrite_without(names);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

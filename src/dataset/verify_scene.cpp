@@ -6,13 +6,14 @@
 
 #include "scene_check.hpp"
 #include "surface_distance.hpp"
+#include "tubebin/core/file_record.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
 #include "tubebin/dataset/verify_dataset.hpp"
 #include "tubebin/scan/scanner.hpp"
 #include "tubebin/scene/scene_json.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 using Problems = std::vector<std::string>;
@@ -24,7 +25,7 @@ constexpr double kTextTolerance = 1e-8;
 // Where tubes collide follows where they are scanned within 1 mm.
 constexpr double kContactTolerance = 1e-3;
 
-void check_identity(const SceneRecord& scene, const DatasetConfig& config, const SceneId& id,
+void check_identity(const scene::SceneRecord& scene, const DatasetConfig& config, const SceneId& id,
                     const ManifestRecord& record, Problems& problems) {
   if (scene.id != id.name()) problems.push_back(fmt::format("scene.json calls itself {}", scene.id));
   if (scene.seed != record.seed)
@@ -34,15 +35,15 @@ void check_identity(const SceneRecord& scene, const DatasetConfig& config, const
   if (scene.scene.bin != config.bin) problems.push_back("scene.json has another bin than config.yaml");
 }
 
-void check_kinds(const SceneRecord& scene, const DatasetConfig& config, Problems& problems) {
+void check_kinds(const scene::SceneRecord& scene, const DatasetConfig& config, Problems& problems) {
   std::map<std::string, int> count_of;
-  for (const PlacedTube& tube : scene.scene.tubes) ++count_of[tube.tube.kind];
+  for (const scene::PlacedTube& tube : scene.scene.tubes) ++count_of[tube.tube.kind];
   if (config.kinds.empty()) {
     if (!count_of.empty() && !count_of.contains("")) problems.push_back("scene.json has kinds, config.yaml has none");
     return;
   }
   for (std::size_t i = 0; i < config.kinds.size(); ++i) {
-    const std::string name = kind_name(config.kinds, i);
+    const std::string name = tube::kind_name(config.kinds, i);
     const int count = count_of[name];
     count_of.erase(name);
     if (count < config.kinds[i].count || (config.kinds[i].share == 0.0 && count > config.kinds[i].count))
@@ -54,18 +55,18 @@ void check_kinds(const SceneRecord& scene, const DatasetConfig& config, Problems
         fmt::format("scene.json has {} tubes of kind '{}', which config.yaml does not have", count, name));
 }
 
-void check_colors(const SceneRecord& scene, Problems& problems) {
-  const std::set<Color> different(scene.colors.begin(), scene.colors.end());
+void check_colors(const scene::SceneRecord& scene, Problems& problems) {
+  const std::set<cloud::Color> different(scene.colors.begin(), scene.colors.end());
   if (scene.colors.size() != scene.scene.tubes.size() + 1 || different.size() != scene.colors.size() ||
-      different.contains(kNullColor))
+      different.contains(cloud::kNullColor))
     problems.push_back(fmt::format("scene.json has {} different colours for {} tubes and the bin", different.size(),
                                    scene.scene.tubes.size()));
 }
 
-void check_tubes_txt(const std::vector<PlacedTube>& read, const SceneRecord& scene, Problems& problems) {
+void check_tubes_txt(const std::vector<scene::PlacedTube>& read, const scene::SceneRecord& scene, Problems& problems) {
   bool same = read.size() == scene.scene.tubes.size();
   for (std::size_t k = 0; same && k < read.size(); ++k) {
-    const PlacedTube& tube = scene.scene.tubes[k];
+    const scene::PlacedTube& tube = scene.scene.tubes[k];
     same = read[k].tube.nodes.size() == tube.tube.nodes.size();
     for (int node = 0; same && node < static_cast<int>(tube.tube.nodes.size()); ++node)
       same = (read[k].node_in_world(node) - tube.node_in_world(node)).norm() < kTextTolerance;
@@ -73,13 +74,13 @@ void check_tubes_txt(const std::vector<PlacedTube>& read, const SceneRecord& sce
   if (!same) problems.push_back("tubes.txt has other tubes than scene.json");
 }
 
-std::vector<BodySurface> surfaces_of(const Scene& scene) {
+std::vector<BodySurface> surfaces_of(const scene::Scene& scene) {
   std::vector<BodySurface> surfaces = {BodySurface(scene.bin)};
-  for (const PlacedTube& tube : scene.tubes) surfaces.emplace_back(tube);
+  for (const scene::PlacedTube& tube : scene.tubes) surfaces.emplace_back(tube);
   return surfaces;
 }
 
-void check_sources(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
+void check_sources(const cloud::Cloud& cloud, const scene::SceneRecord& scene, Problems& problems) {
   const std::size_t source_count = scene.scene.source_count();
   if (cloud.sources.size() != (source_count > 1 ? cloud.size() : 0))
     problems.push_back(fmt::format("{} of the cloud's {} points say which of {} scanners saw them",
@@ -88,8 +89,9 @@ void check_sources(const Cloud& cloud, const SceneRecord& scene, Problems& probl
     problems.push_back(fmt::format("the cloud has points of other sources than its {} scanners", source_count));
 }
 
-void check_cloud_layout(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
-  const bool is_organized = scene.scene.further_scanners.empty() && scene.scene.scanner.region != ScanRegion::tubes &&
+void check_cloud_layout(const cloud::Cloud& cloud, const scene::SceneRecord& scene, Problems& problems) {
+  const bool is_organized = scene.scene.further_scanners.empty() &&
+                            scene.scene.scanner.region != scene::ScanRegion::tubes &&
                             scene.window.width * scene.window.height > 0;
   if (is_organized && (cloud.width != static_cast<std::uint32_t>(scene.window.width) ||
                        cloud.height != static_cast<std::uint32_t>(scene.window.height)))
@@ -101,14 +103,15 @@ void check_cloud_layout(const Cloud& cloud, const SceneRecord& scene, Problems& 
 }
 
 /// Labels and colours; that points lie on their surfaces where `exact` says so. Returns the tubes' pixels.
-std::vector<std::size_t> check_points(const Cloud& cloud, const SceneRecord& scene, bool exact, Problems& problems) {
+std::vector<std::size_t> check_points(const cloud::Cloud& cloud, const scene::SceneRecord& scene, bool exact,
+                                      Problems& problems) {
   const std::vector<BodySurface> surfaces = surfaces_of(scene.scene);
   std::vector<std::size_t> pixels(surfaces.size(), 0);
   std::size_t unknown = 0, miscolored = 0, off_surface = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Label label = cloud.labels[i];
-    if (!is_finite(cloud.points[i])) {
-      miscolored += label != 0 || cloud.colors[i] != kNullColor;
+    const cloud::Label label = cloud.labels[i];
+    if (!cloud::is_finite(cloud.points[i])) {
+      miscolored += label != 0 || cloud.colors[i] != cloud::kNullColor;
     } else if (label >= surfaces.size()) {
       ++unknown;
     } else {
@@ -128,13 +131,13 @@ std::vector<std::size_t> check_points(const Cloud& cloud, const SceneRecord& sce
 
 /// How many points are others than those of `expected`: of another label, missing, or farther off than exact surfaces
 /// may be.
-std::size_t count_differences(const Cloud& cloud, const Cloud& expected) {
+std::size_t count_differences(const cloud::Cloud& cloud, const cloud::Cloud& expected) {
   if (cloud.size() != expected.size()) return std::max(cloud.size(), expected.size());
   std::size_t differences = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Point &found = cloud.points[i], &wanted = expected.points[i];
-    const bool same_place =
-        is_finite(wanted) ? (found - wanted).norm() <= static_cast<float>(kSurfaceTolerance) : !is_finite(found);
+    const cloud::Point &found = cloud.points[i], &wanted = expected.points[i];
+    const bool same_place = cloud::is_finite(wanted) ? (found - wanted).norm() <= static_cast<float>(kSurfaceTolerance)
+                                                     : !cloud::is_finite(found);
     differences += !same_place || cloud.labels[i] != expected.labels[i] ||
                    (!expected.sources.empty() && cloud.sources[i] != expected.sources[i]);
   }
@@ -143,15 +146,15 @@ std::size_t count_differences(const Cloud& cloud, const Cloud& expected) {
 
 /// A cloud with effects is off the surfaces by design, by its seed's noise. So it is compared with what the seed gives,
 /// and the surfaces with its noise-free twin.
-void check_effects(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
-  if (const std::size_t differing = count_differences(cloud, scan_from_all(scene.scene, scene.seed).cloud))
+void check_effects(const cloud::Cloud& cloud, const scene::SceneRecord& scene, Problems& problems) {
+  if (const std::size_t differing = count_differences(cloud, scan::scan_from_all(scene.scene, scene.seed).cloud))
     problems.push_back(fmt::format("{} points are not what the scanner's effects make of the scene", differing));
-  check_points(scan_exactly_from_all(scene.scene).cloud, scene, true, problems);
+  check_points(scan::scan_exactly_from_all(scene.scene).cloud, scene, true, problems);
 }
 
-void check_cloud(const Cloud& cloud, const SceneRecord& scene, Problems& problems) {
+void check_cloud(const cloud::Cloud& cloud, const scene::SceneRecord& scene, Problems& problems) {
   bool has_effects = scene.scene.scanner.effects.any();
-  for (const Scanner& scanner : scene.scene.further_scanners) has_effects |= scanner.effects.any();
+  for (const scene::Scanner& scanner : scene.scene.further_scanners) has_effects |= scanner.effects.any();
   const std::vector<std::size_t> pixels = check_points(cloud, scene, !has_effects, problems);
   if (pixels != scene.tube_pixels)
     problems.push_back(fmt::format("the cloud shows [{}] pixels of the tubes, scene.json says [{}]",
@@ -159,20 +162,20 @@ void check_cloud(const Cloud& cloud, const SceneRecord& scene, Problems& problem
   if (has_effects) check_effects(cloud, scene, problems);
 }
 
-void check_clean_cloud(const Cloud& clean, const SceneRecord& scene, Problems& problems) {
+void check_clean_cloud(const cloud::Cloud& clean, const scene::SceneRecord& scene, Problems& problems) {
   check_cloud_layout(clean, scene, problems);
   if (!problems.empty()) return;
   check_points(clean, scene, true, problems);
-  if (const std::size_t differing = count_differences(clean, scan_exactly_from_all(scene.scene).cloud))
+  if (const std::size_t differing = count_differences(clean, scan::scan_exactly_from_all(scene.scene).cloud))
     problems.push_back(fmt::format("{} points of cloud_clean are not the scene as exact rays see it", differing));
 }
 
-void check_contacts(const SceneRecord& scene, const DatasetConfig& config, Problems& problems) {
-  Scene solid = scene.scene;  // bores are filled where tubes collide
-  for (PlacedTube& tube : solid.tubes) tube.tube.wall_thickness = 0.0;
+void check_contacts(const scene::SceneRecord& scene, const DatasetConfig& config, Problems& problems) {
+  scene::Scene solid = scene.scene;  // bores are filled where tubes collide
+  for (scene::PlacedTube& tube : solid.tubes) tube.tube.wall_thickness = 0.0;
   const std::vector<BodySurface> surfaces = surfaces_of(solid);
-  for (const Contact& contact : scene.contacts) {
-    const auto off = [&](Label label) {
+  for (const scene::Contact& contact : scene.contacts) {
+    const auto off = [&](cloud::Label label) {
       return label >= surfaces.size() ||
              surfaces[label].distance(contact.position) > std::abs(contact.depth) + kContactTolerance;
     };
@@ -187,43 +190,45 @@ void check_contacts(const SceneRecord& scene, const DatasetConfig& config, Probl
 }
 
 /// Tubes from which no chain of contacts leads to the bin.
-void check_held(const SceneRecord& scene, Problems& problems) {
-  std::set<Label> held = {0};
+void check_held(const scene::SceneRecord& scene, Problems& problems) {
+  std::set<cloud::Label> held = {0};
   for (std::size_t before = 0; before != held.size();) {
     before = held.size();
-    for (const Contact& contact : scene.contacts) {
+    for (const scene::Contact& contact : scene.contacts) {
       if (held.contains(contact.label_a)) held.insert(contact.label_b);
       if (held.contains(contact.label_b)) held.insert(contact.label_a);
     }
   }
-  for (Label k = 1; k <= scene.scene.tubes.size(); ++k)
+  for (cloud::Label k = 1; k <= scene.scene.tubes.size(); ++k)
     if (!held.contains(k)) problems.push_back(fmt::format("tube {} floats: no contacts lead from it to the bin", k));
 }
 
-void check_relations(const SceneRecord& scene, Problems& problems) {
+void check_relations(const scene::SceneRecord& scene, Problems& problems) {
   if (!scene.relations) problems.push_back("scene.json does not say who covers whom");
   else if (*scene.relations != relate_pile(scene.scene))
     problems.push_back("scene.json's amodal pixels, occlusions or entanglement are not those of its tubes");
 }
 
-void check_content(const DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
+void check_content(const scene::DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
                    const ManifestRecord& record, Problems& problems) {
   const auto parse = [&](const auto& parser, const std::string& file) {
     return parser(files.read(record.id, file), files.place(record.id, file));
   };
-  const auto cloud_parser = [](const std::string& bytes, const std::string& name) { return parse_cloud(bytes, name); };
-  const SceneRecord scene = parse(parse_scene_json, "scene.json");
+  const auto cloud_parser = [](const std::string& bytes, const std::string& name) {
+    return cloud::parse_cloud(bytes, name);
+  };
+  const scene::SceneRecord scene = parse(scene::parse_scene_json, "scene.json");
   check_identity(scene, config, id, record, problems);
   check_kinds(scene, config, problems);
   check_colors(scene, problems);
-  check_tubes_txt(parse(parse_tubes_txt, "tubes.txt"), scene, problems);
+  check_tubes_txt(parse(scene::parse_tubes_txt, "tubes.txt"), scene, problems);
   check_contacts(scene, config, problems);
   check_held(scene, problems);
   check_relations(scene, problems);
   if (record.physics.largest_drift > config.physics.drift_max)
     problems.push_back(
         fmt::format("a tube moved by {:.3f} mm in the check at the end", record.physics.largest_drift * 1e3));
-  const Cloud cloud = parse(cloud_parser, std::string("cloud") + extension(config.output.format));
+  const cloud::Cloud cloud = parse(cloud_parser, std::string("cloud") + extension(config.output.format));
   check_cloud_layout(cloud, scene, problems);
   if (problems.empty()) check_cloud(cloud, scene, problems);
   if (config.output.clean_cloud)
@@ -233,7 +238,7 @@ void check_content(const DatasetFiles& files, const DatasetConfig& config, const
 
 }  // namespace
 
-std::vector<std::string> check_files(const DatasetFiles& files, const ManifestRecord& record) {
+std::vector<std::string> check_files(const scene::DatasetFiles& files, const ManifestRecord& record) {
   Problems problems;
   for (const auto& [name, expected] : record.files) {
     if (!files.has(record.id, name)) {
@@ -249,7 +254,7 @@ std::vector<std::string> check_files(const DatasetFiles& files, const ManifestRe
   return problems;
 }
 
-std::vector<std::string> verify_scene(const DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
+std::vector<std::string> verify_scene(const scene::DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
                                       const ManifestRecord& record) {
   Problems problems;
   try {
@@ -262,4 +267,4 @@ std::vector<std::string> verify_scene(const DatasetFiles& files, const DatasetCo
   return problems;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

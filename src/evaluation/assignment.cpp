@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 /// Shortest augmenting paths with potentials (Jonker & Volgenant 1987, after Kuhn 1955 and Munkres 1957) over
@@ -103,4 +103,4 @@ std::vector<int> max_weight_assignment(const Counts& weights) {
   return column_of_row;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

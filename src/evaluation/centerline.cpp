@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 std::vector<Vec3> sample_piece(const CenterlinePiece& piece) {
@@ -79,20 +79,20 @@ double CenterlineSamples::visible_fraction() const {
   return static_cast<double>(std::count(visible.begin(), visible.end(), char{1})) / static_cast<double>(visible.size());
 }
 
-Centerline centerline(const PlacedTube& tube) {
+Centerline centerline(const scene::PlacedTube& tube) {
   Centerline line;
-  for (const Cylinder& cylinder : tube.tube.cylinders)
+  for (const tube::Cylinder& cylinder : tube.tube.cylinders)
     line.push_back({tube.node_in_world(cylinder.node_a), tube.node_in_world(cylinder.node_b)});
   // A node alone is a sphere: a piece of no length.
   if (line.empty() && !tube.tube.nodes.empty()) line.push_back({tube.node_in_world(0), tube.node_in_world(0)});
   return line;
 }
 
-std::vector<CenterlineSamples> sample_centerlines(const Scene& scene) {
+std::vector<CenterlineSamples> sample_centerlines(const scene::Scene& scene) {
   std::vector<Vec3> scanners = {scene.scanner.position};
-  for (const Scanner& scanner : scene.further_scanners) scanners.push_back(scanner.position);
+  for (const scene::Scanner& scanner : scene.further_scanners) scanners.push_back(scanner.position);
   std::vector<Centerline> lines;
-  for (const PlacedTube& tube : scene.tubes) lines.push_back(centerline(tube));
+  for (const scene::PlacedTube& tube : scene.tubes) lines.push_back(centerline(tube));
   std::vector<CenterlineSamples> result(lines.size());
   for (std::size_t k = 0; k < lines.size(); ++k) {
     for (const CenterlinePiece& piece : lines[k]) {
@@ -133,4 +133,4 @@ CenterlineError centerline_error(const Centerline& truth, const CenterlineSample
   return error;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -6,18 +6,18 @@
 #include "position_index.hpp"
 #include "tubebin/core/error.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 /// Whether equal labels mean equal colours and the other way round; else the first point where they do not.
-std::optional<std::size_t> first_disagreement(const Cloud& cloud) {
-  std::unordered_map<Label, Color> color_of_label;
-  std::unordered_map<Color, Label> label_of_color;
+std::optional<std::size_t> first_disagreement(const cloud::Cloud& cloud) {
+  std::unordered_map<cloud::Label, cloud::Color> color_of_label;
+  std::unordered_map<cloud::Color, cloud::Label> label_of_color;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Label label = cloud.labels[i];
-    const Color color = cloud.colors[i];
+    const cloud::Label label = cloud.labels[i];
+    const cloud::Color color = cloud.colors[i];
     const bool repeats = i > 0 && label == cloud.labels[i - 1] && color == cloud.colors[i - 1];
-    if (repeats || !is_finite(cloud.points[i])) continue;
+    if (repeats || !cloud::is_finite(cloud.points[i])) continue;
     if (color_of_label.try_emplace(label, color).first->second != color ||
         label_of_color.try_emplace(color, label).first->second != label)
       return i;
@@ -26,7 +26,7 @@ std::optional<std::size_t> first_disagreement(const Cloud& cloud) {
 }
 
 SegmentField automatic_field(const NamedCloud& named) {
-  const Cloud& cloud = named.cloud;
+  const cloud::Cloud& cloud = named.cloud;
   if (cloud.labels.empty() && cloud.colors.empty())
     throw_io_error("{}: has neither a label field nor colours, so it names no tubes", named.name);
   if (cloud.labels.empty()) return SegmentField::color;
@@ -48,12 +48,12 @@ SegmentField resolve_field(const NamedCloud& named, SegmentField field) {
   return field;
 }
 
-const std::vector<SegmentId>& ids_of(const Cloud& cloud, SegmentField field) {
+const std::vector<SegmentId>& ids_of(const cloud::Cloud& cloud, SegmentField field) {
   return field == SegmentField::label ? cloud.labels : cloud.colors;
 }
 
 void require_points(const NamedCloud& named) {
-  if (std::none_of(named.cloud.points.begin(), named.cloud.points.end(), is_finite))
+  if (std::none_of(named.cloud.points.begin(), named.cloud.points.end(), cloud::is_finite))
     throw_io_error("{}: has no point with a position", named.name);
 }
 
@@ -70,12 +70,12 @@ std::vector<SegmentId> predicted_ids(const NamedCloud& filtered, const NamedClou
     if (point_of[i] != kNoPoint) {
       predicted[point_of[i]] = ids[i];
       found[point_of[i]] = 1;
-    } else if (is_finite(labeled.cloud.points[i]) && strangers++ == 0) {
+    } else if (cloud::is_finite(labeled.cloud.points[i]) && strangers++ == 0) {
       first_stranger = i;
     }
   }
   if (strangers > 0) {
-    const Point& p = labeled.cloud.points[first_stranger];
+    const cloud::Point& p = labeled.cloud.points[first_stranger];
     throw_io_error(
         "{}: {} of its {} points are at no point of {} (the first is point {} at {} {} {} m); a labelled "
         "cloud has "
@@ -102,8 +102,8 @@ PairedIds pair_clouds(const NamedCloud& filtered, const NamedCloud& labeled, Seg
   pairs.truth.reserve(truth.size());
   pairs.predicted.reserve(truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (!is_finite(filtered.cloud.points[i])) continue;
-    if (truth_field == SegmentField::color && truth[i] == kNullColor) {
+    if (!cloud::is_finite(filtered.cloud.points[i])) continue;
+    if (truth_field == SegmentField::color && truth[i] == cloud::kNullColor) {
       ++pairs.unannotated;
       continue;
     }
@@ -117,4 +117,4 @@ PairedIds pair_clouds(const NamedCloud& filtered, const NamedCloud& labeled, Seg
   return pairs;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

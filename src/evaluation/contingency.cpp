@@ -6,7 +6,7 @@
 
 #include "tubebin/core/error.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 /// Beyond this many pairs of segments (128 MB of counts) a cloud's colours are a photograph's, not labels.
@@ -78,4 +78,4 @@ Contingency count_pairs(std::span<const SegmentId> truth, std::span<const Segmen
   return contingency;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 std::size_t columns_of(const Contingency& c) { return c.predicted_ids.size(); }
@@ -192,4 +192,4 @@ double adjusted_rand_index(const Counts& counts) {
   return largest > expected ? (same_both - expected) / (largest - expected) : 1.0;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -1,6 +1,6 @@
 #include "tubebin/evaluation/micro_recall.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 Matching match_segments(const Contingency& contingency, BinPoints bin_points) {
   Counts weights = contingency.counts;
@@ -18,4 +18,4 @@ Matching match_segments(const Contingency& contingency, BinPoints bin_points) {
   return matching;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 void parallel_for(std::size_t count, int jobs, const std::function<void(std::size_t)>& work,
                   const OnProgress& on_progress) {
@@ -43,4 +43,4 @@ void parallel_for(std::size_t count, int jobs, const std::function<void(std::siz
   if (error) std::rethrow_exception(error);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

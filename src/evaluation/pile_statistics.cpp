@@ -9,7 +9,7 @@
 #include "statistics.hpp"
 #include "tubebin/evaluation/centerline.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 /// A cylinder's axis, and whether its ends are free: joined to no other cylinder.
@@ -24,10 +24,10 @@ struct TubeAxis {
   double length() const { return (end - start).norm(); }
 };
 
-std::vector<TubeAxis> axes_of(const PlacedTube& placed) {
+std::vector<TubeAxis> axes_of(const scene::PlacedTube& placed) {
   const std::vector<int> degrees = placed.tube.node_degrees();
   std::vector<TubeAxis> axes;
-  for (const Cylinder& c : placed.tube.cylinders)
+  for (const tube::Cylinder& c : placed.tube.cylinders)
     axes.push_back({placed.node_in_world(c.node_a), placed.node_in_world(c.node_b), placed.tube.radius_of(c),
                     degrees[static_cast<std::size_t>(c.node_a)] < 2, degrees[static_cast<std::size_t>(c.node_b)] < 2});
   return axes;
@@ -143,11 +143,11 @@ double quantile(const std::vector<double>& sorted, double share) {
 
 }  // namespace
 
-PileStatistics pile_statistics(const Scene& scene, const std::vector<std::size_t>& tube_pixels) {
+PileStatistics pile_statistics(const scene::Scene& scene, const std::vector<std::size_t>& tube_pixels) {
   PileStatistics statistics;
   if (scene.tubes.empty()) return statistics;
   std::vector<std::vector<TubeAxis>> axes;
-  for (const PlacedTube& tube : scene.tubes) axes.push_back(axes_of(tube));
+  for (const scene::PlacedTube& tube : scene.tubes) axes.push_back(axes_of(tube));
   add_heights_and_spread(sample_centerlines(scene), statistics);
   add_cylinders(axes, statistics);
   add_contacts(axes, statistics);
@@ -186,4 +186,4 @@ Table pile_table(const std::vector<PileComparison>& comparisons) {
   return table;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

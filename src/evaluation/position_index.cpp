@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 std::uint64_t mix(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
@@ -14,7 +14,7 @@ std::uint64_t mix(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
   return hash ^ (hash >> 31);
 }
 
-std::uint64_t position_hash(const Point& point) {
+std::uint64_t position_hash(const cloud::Point& point) {
   // Adding zero turns -0 into 0, which compares equal to it.
   const auto bits = [](float value) { return std::uint64_t{std::bit_cast<std::uint32_t>(value + 0.0F)}; };
   return mix(bits(point.x()), bits(point.y()), bits(point.z()));
@@ -52,32 +52,34 @@ class PointChains {
   std::vector<std::uint32_t> next_;
 };
 
-bool in_the_same_order(std::span<const Point> a, std::span<const Point> b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const Point& p, const Point& q) {
-           return p == q || (!is_finite(p) && !is_finite(q));
+bool in_the_same_order(std::span<const cloud::Point> a, std::span<const cloud::Point> b) {
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [](const cloud::Point& p, const cloud::Point& q) {
+           return p == q || (!cloud::is_finite(p) && !cloud::is_finite(q));
          });
 }
 
-std::vector<std::uint32_t> identity(std::span<const Point> points) {
+std::vector<std::uint32_t> identity(std::span<const cloud::Point> points) {
   std::vector<std::uint32_t> result(points.size(), kNoPoint);
   for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (is_finite(points[i])) result[i] = i;
+    if (cloud::is_finite(points[i])) result[i] = i;
   return result;
 }
 
-void match_equal(std::span<const Point> queries, std::span<const Point> reference, std::vector<std::uint32_t>& result) {
+void match_equal(std::span<const cloud::Point> queries, std::span<const cloud::Point> reference,
+                 std::vector<std::uint32_t>& result) {
   PointChains chains(reference.size());
   for (std::size_t i = reference.size(); i-- > 0;)
-    if (is_finite(reference[i])) chains.add(position_hash(reference[i]), static_cast<std::uint32_t>(i));
+    if (cloud::is_finite(reference[i])) chains.add(position_hash(reference[i]), static_cast<std::uint32_t>(i));
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    const Point& query = queries[i];
-    if (!is_finite(query)) continue;
+    const cloud::Point& query = queries[i];
+    if (!cloud::is_finite(query)) continue;
     result[i] = chains.take_first(position_hash(query), [&](std::uint32_t p) { return reference[p] == query; });
   }
 }
 
 /// Cells are twice the tolerance wide, so what is near a query lies in at most two cells in each direction.
-void match_near(std::span<const Point> queries, std::span<const Point> reference, float tolerance,
+void match_near(std::span<const cloud::Point> queries, std::span<const cloud::Point> reference, float tolerance,
                 std::vector<std::uint32_t>& result) {
   const double cell_size = 2.0 * static_cast<double>(tolerance);
   const auto cell = [&](double coordinate) {
@@ -90,13 +92,13 @@ void match_near(std::span<const Point> queries, std::span<const Point> reference
 
   PointChains chains(reference.size());
   for (std::size_t i = reference.size(); i-- > 0;) {
-    const Point& p = reference[i];
-    if (!taken[i] && is_finite(p))
+    const cloud::Point& p = reference[i];
+    if (!taken[i] && cloud::is_finite(p))
       chains.add(mix(cell(p.x()), cell(p.y()), cell(p.z())), static_cast<std::uint32_t>(i));
   }
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    const Point& query = queries[i];
-    if (result[i] != kNoPoint || !is_finite(query)) continue;
+    const cloud::Point& query = queries[i];
+    if (result[i] != kNoPoint || !cloud::is_finite(query)) continue;
     const auto is_near = [&](std::uint32_t p) { return (reference[p] - query).cwiseAbs().maxCoeff() <= tolerance; };
     for (int corner = 0; corner < 8 && result[i] == kNoPoint; ++corner) {
       const auto side = [&](int axis) {
@@ -110,17 +112,17 @@ void match_near(std::span<const Point> queries, std::span<const Point> reference
 
 }  // namespace
 
-std::vector<std::uint32_t> corresponding_points(std::span<const Point> queries, std::span<const Point> reference,
-                                                float tolerance) {
+std::vector<std::uint32_t> corresponding_points(std::span<const cloud::Point> queries,
+                                                std::span<const cloud::Point> reference, float tolerance) {
   if (in_the_same_order(queries, reference)) return identity(queries);
   std::vector<std::uint32_t> result(queries.size(), kNoPoint);
   match_equal(queries, reference, result);
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    if (result[i] != kNoPoint || !is_finite(queries[i])) continue;
+    if (result[i] != kNoPoint || !cloud::is_finite(queries[i])) continue;
     match_near(queries, reference, tolerance, result);
     break;
   }
   return result;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 /// The scene's index of the tube with this label, if the scene has it.
@@ -86,8 +86,8 @@ RunKey parse_scene_name(const std::string& name) {
   return key;
 }
 
-SceneTruth::SceneTruth(const Scene& scene) : samples(sample_centerlines(scene)) {
-  for (const PlacedTube& tube : scene.tubes) centerlines.push_back(centerline(tube));
+SceneTruth::SceneTruth(const scene::Scene& scene) : samples(sample_centerlines(scene)) {
+  for (const scene::PlacedTube& tube : scene.tubes) centerlines.push_back(centerline(tube));
 }
 
 RunScore score_run(const RunKey& key, const Contingency& contingency, const Matching& matching, const SceneTruth* truth,
@@ -105,4 +105,4 @@ RunScore score_run(const RunKey& key, const Contingency& contingency, const Matc
   return run;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

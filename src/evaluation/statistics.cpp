@@ -6,7 +6,7 @@
 
 #include "tubebin/core/random.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 std::vector<double> ranks(std::span<const double> values) {
@@ -84,4 +84,4 @@ Interval bootstrap_of_means(const std::vector<std::vector<double>>& groups,
   return interval;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

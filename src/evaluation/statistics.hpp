@@ -8,7 +8,7 @@
 
 #include "tubebin/evaluation/summary.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 double mean(std::span<const double> values);
 
@@ -30,4 +30,4 @@ Interval bootstrap_of_means(const std::vector<std::vector<double>>& groups,
                             const std::function<double(std::span<const double> means)>& statistic, std::uint64_t seed);
 inline constexpr std::uint64_t kBootstrapSeed = 1;  ///< of the claims' intervals
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -6,7 +6,7 @@
 #include "statistics.hpp"
 #include "tubebin/core/random.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 /// A seed that depends on the group alone, so that other groups in the same results don't change its
@@ -131,4 +131,4 @@ GroupSummary summarize_together(const std::string& method, const std::string& se
   return summarize_group({method, set, 0, 0.0}, runs);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -1,12 +1,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "export/formats.hpp"
 #include "export/scene_image.hpp"
 #include "export/tube_mesh_file.hpp"
 #include "tubebin/core/atomic_file.hpp"
-#include "tubebin/export/formats.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -35,14 +35,14 @@ Json millimetres(const Vec3& vector) {
 Json box_json(const PixelBox& box) { return {box.x, box.y, box.width, box.height}; }
 
 /// Millimetres a unit of the depth image: the finest power of ten by which 16 bits hold the scanner's range.
-double depth_scale(const Scanner& scanner) {
+double depth_scale(const scene::Scanner& scanner) {
   double scale = 0.1;
   while (scanner.range_max * kMillimetres / scale > 65535.0) scale *= 10.0;
   return scale;
 }
 
 /// BOP's pixels have their centres at whole numbers, ours half a pixel farther.
-Eigen::Matrix3d intrinsics(const Camera& camera) {
+Eigen::Matrix3d intrinsics(const scene::Camera& camera) {
   Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
   k(0, 0) = k(1, 1) = camera.focal_length();
   k(0, 2) = camera.width() / 2.0 - 0.5;
@@ -58,7 +58,7 @@ Raster<std::uint16_t> depth_image(const Raster<float>& depths, double scale) {
   return image;
 }
 
-Json camera_json(const Camera& camera, double scale) {
+Json camera_json(const scene::Camera& camera, double scale) {
   const Pose scanner_from_world = camera.world_from_scanner().inverse();
   return {{"0",
            {{"cam_K", rows_of(intrinsics(camera))},
@@ -67,7 +67,7 @@ Json camera_json(const Camera& camera, double scale) {
             {"depth_scale", scale}}}};
 }
 
-Json pose_json(const PlacedTube& placed, const Camera& camera, int object) {
+Json pose_json(const scene::PlacedTube& placed, const scene::Camera& camera, int object) {
   const Pose scanner_from_tube = camera.world_from_scanner().inverse() * placed.world_from_tube;
   return {{"obj_id", object},
           {"cam_R_m2c", rows_of(scanner_from_tube.linear())},
@@ -98,17 +98,17 @@ class BopFormat : public ExportFormat {
 
   SceneFiles export_scene(const SceneToExport& scene) const override {
     const SceneImage image(scene);
-    const Camera& camera = image.camera();
+    const scene::Camera& camera = image.camera();
     const double scale = depth_scale(scene.record.scene.scanner);
     const Raster<float> depths = image.depths();
-    const auto views = view_tubes_alone(scene.record.scene);
+    const auto views = scan::view_tubes_alone(scene.record.scene);
     SceneFiles files;
     Json poses = Json::array(), infos = Json::array(), models = Json::object();
     for (std::size_t k = 0; k < views.size(); ++k) {
-      const PlacedTube& placed = scene.record.scene.tubes[k];
+      const scene::PlacedTube& placed = scene.record.scene.tubes[k];
       const int object = scene.entry.first_object + static_cast<int>(k);
       const TubeMeshFile mesh = tube_mesh_file(placed.tube);
-      const Mask whole = mask_of(views[k], camera), visible = image.visible_mask(static_cast<Label>(k + 1));
+      const Mask whole = mask_of(views[k], camera), visible = image.visible_mask(static_cast<cloud::Label>(k + 1));
       files.beside[fmt::format("models/obj_{:06d}.ply", object)] = mesh.ply;
       files.scene[fmt::format("mask/000000_{:06d}.png", k)] = png_of(whole);
       files.scene[fmt::format("mask_visib/000000_{:06d}.png", k)] = png_of(visible);
@@ -161,4 +161,4 @@ class BopFormat : public ExportFormat {
 
 std::unique_ptr<ExportFormat> bop_format() { return std::make_unique<BopFormat>(); }
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

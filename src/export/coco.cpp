@@ -1,10 +1,10 @@
 #include <nlohmann/json.hpp>
 
+#include "export/formats.hpp"
 #include "export/scene_image.hpp"
 #include "tubebin/core/atomic_file.hpp"
-#include "tubebin/export/formats.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -38,7 +38,7 @@ Json box_json(const Mask& mask) {
   return {box.x, box.y, box.width, box.height};
 }
 
-Json image_json(const SceneEntry& entry, const Camera& camera) {
+Json image_json(const SceneEntry& entry, const scene::Camera& camera) {
   return {{"id", entry.number},
           {"file_name", entry.name + "/" + kImage},
           {"width", camera.width()},
@@ -67,10 +67,10 @@ class CocoFormat : public ExportFormat {
 
   SceneFiles export_scene(const SceneToExport& scene) const override {
     const SceneImage image(scene);
-    const auto views = view_tubes_alone(scene.record.scene);
+    const auto views = scan::view_tubes_alone(scene.record.scene);
     Json annotations = Json::array();
     for (std::size_t k = 0; k < views.size(); ++k) {
-      const Mask visible = image.visible_mask(static_cast<Label>(k + 1));
+      const Mask visible = image.visible_mask(static_cast<cloud::Label>(k + 1));
       if (pixels_of(visible) == 0) continue;  // COCO has no instances that nothing shows
       annotations.push_back(annotation_json(scene.entry, k, visible, mask_of(views[k], image.camera())));
     }
@@ -106,4 +106,4 @@ class CocoFormat : public ExportFormat {
 
 std::unique_ptr<ExportFormat> coco_format() { return std::make_unique<CocoFormat>(); }
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

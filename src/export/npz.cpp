@@ -2,11 +2,11 @@
 
 #include <type_traits>
 
+#include "export/formats.hpp"
 #include "export/scene_image.hpp"
 #include "export/zip.hpp"
-#include "tubebin/export/formats.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 namespace {
 
 template <typename Value>
@@ -43,7 +43,7 @@ void append_rows(std::vector<double>& values, const Matrix& matrix) {
     for (int column = 0; column < matrix.cols(); ++column) values.push_back(matrix(row, column));
 }
 
-std::vector<std::size_t> image_shape(const Cloud& cloud) {
+std::vector<std::size_t> image_shape(const cloud::Cloud& cloud) {
   return cloud.organized() ? std::vector<std::size_t>{cloud.height, cloud.width}
                            : std::vector<std::size_t>{cloud.size()};
 }
@@ -53,12 +53,12 @@ std::vector<std::size_t> operator+(std::vector<std::size_t> shape, std::size_t s
   return shape;
 }
 
-void add_cloud(const Cloud& cloud, Files& arrays) {
+void add_cloud(const cloud::Cloud& cloud, Files& arrays) {
   std::vector<float> points;
   std::vector<std::int32_t> labels;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     points.insert(points.end(), cloud.points[i].data(), cloud.points[i].data() + 3);
-    labels.push_back(is_finite(cloud.points[i]) ? static_cast<std::int32_t>(cloud.labels[i]) : -1);
+    labels.push_back(cloud::is_finite(cloud.points[i]) ? static_cast<std::int32_t>(cloud.labels[i]) : -1);
   }
   arrays["points.npy"] = npy(points, image_shape(cloud) + 3);
   arrays["labels.npy"] = npy(labels, image_shape(cloud));
@@ -66,8 +66,8 @@ void add_cloud(const Cloud& cloud, Files& arrays) {
     arrays["sources.npy"] = npy(std::vector<std::int32_t>(cloud.sources.begin(), cloud.sources.end()), {cloud.size()});
 }
 
-void add_scanner(const SceneRecord& record, Files& arrays) {
-  const Camera camera(record.scene.scanner);
+void add_scanner(const scene::SceneRecord& record, Files& arrays) {
+  const scene::Camera camera(record.scene.scanner);
   Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
   k(0, 0) = k(1, 1) = camera.focal_length();
   k(0, 2) = camera.width() / 2.0;
@@ -75,7 +75,7 @@ void add_scanner(const SceneRecord& record, Files& arrays) {
   std::vector<double> intrinsics, pose;
   append_rows(intrinsics, k);
   append_rows(pose, camera.world_from_scanner().matrix());
-  const PixelWindow& window = record.window;
+  const scene::PixelWindow& window = record.window;
   arrays["intrinsics.npy"] = npy(intrinsics, {3, 3});
   arrays["world_from_scanner.npy"] = npy(pose, {4, 4});
   arrays["window.npy"] = npy(std::vector<std::int64_t>{window.x, window.y, window.width, window.height}, {4});
@@ -87,16 +87,16 @@ void add_tubes(const SceneToExport& scene, Files& arrays) {
   std::vector<double> poses, radii, nodes, cylinder_radii;
   std::vector<std::int64_t> tube_of_node, cylinders, visible, amodal;
   std::int64_t first_node = 0;
-  const PileView view = view_pile(scene.record.scene);
+  const scan::PileView view = scan::view_pile(scene.record.scene);
   for (std::size_t k = 0; k < view.amodal_pixels.size(); ++k) {
-    const PlacedTube& placed = scene.record.scene.tubes[k];
+    const scene::PlacedTube& placed = scene.record.scene.tubes[k];
     append_rows(poses, placed.world_from_tube.matrix());
     radii.push_back(placed.tube.radius);
     for (int node = 0; node < static_cast<int>(placed.tube.nodes.size()); ++node) {
       append_rows(nodes, placed.node_in_world(node));
       tube_of_node.push_back(static_cast<std::int64_t>(k + 1));
     }
-    for (const Cylinder& cylinder : placed.tube.cylinders) {
+    for (const tube::Cylinder& cylinder : placed.tube.cylinders) {
       cylinders.insert(cylinders.end(), {first_node + cylinder.node_a, first_node + cylinder.node_b});
       cylinder_radii.push_back(placed.tube.radius_of(cylinder));
     }
@@ -132,4 +132,4 @@ class NpzFormat : public ExportFormat {
 
 std::unique_ptr<ExportFormat> npz_format() { return std::make_unique<NpzFormat>(); }
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

@@ -1,16 +1,16 @@
+#include "export/formats.hpp"
 #include "export/published_layout.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
-#include "tubebin/export/formats.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 namespace {
 
-Cloud tubes_alone(const Cloud& cloud) {
-  Cloud tubes;
+cloud::Cloud tubes_alone(const cloud::Cloud& cloud) {
+  cloud::Cloud tubes;
   tubes.world_from_sensor = cloud.world_from_sensor;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_finite(cloud.points[i]) || cloud.labels[i] == 0) continue;
+    if (!cloud::is_finite(cloud.points[i]) || cloud.labels[i] == 0) continue;
     tubes.points.push_back(cloud.points[i]);
     tubes.labels.push_back(cloud.labels[i]);
     if (!cloud.colors.empty()) tubes.colors.push_back(cloud.colors[i]);
@@ -25,8 +25,8 @@ class PlyFormat : public ExportFormat {
 
   SceneFiles export_scene(const SceneToExport& scene) const override {
     return {.beside = {{published_path(scene.entry, "tube_configurations", ".txt"),
-                        format_tubes_txt(scene.record.scene.tubes)}},
-            .scene = {{"", format_cloud(tubes_alone(scene.cloud), CloudFormat::ply_binary)}}};
+                        scene::format_tubes_txt(scene.record.scene.tubes)}},
+            .scene = {{"", cloud::format_cloud(tubes_alone(scene.cloud), cloud::CloudFormat::ply_binary)}}};
   }
 };
 
@@ -34,4 +34,4 @@ class PlyFormat : public ExportFormat {
 
 std::unique_ptr<ExportFormat> ply_format() { return std::make_unique<PlyFormat>(); }
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

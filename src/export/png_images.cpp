@@ -4,7 +4,7 @@
 
 #include "export/scene_image.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 namespace {
 
 std::string encode(const void* pixels, int width, int height, png_uint_32 format) {
@@ -34,4 +34,4 @@ std::string png_of_rgb(const std::vector<std::uint8_t>& rgb, int width, int heig
   return encode(rgb.data(), width, height, PNG_FORMAT_RGB);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "tubebin/export/scene_export.hpp"
+#include "export/scene_export.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 
 /// "A10/007", "plys", ".ply" -> "A10/plys/7.ply".
 inline std::string published_path(const SceneEntry& entry, const std::string& folder, const std::string& extension) {
@@ -16,4 +16,4 @@ inline std::string published_path(const SceneEntry& entry, const std::string& fo
   return (slash == std::string::npos ? "" : entry.name.substr(0, slash + 1)) + folder + "/" + file + extension;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

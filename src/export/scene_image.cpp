@@ -6,7 +6,7 @@
 #include "export/surface_normal.hpp"
 #include "tubebin/core/error.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 namespace {
 
 struct Pixel {
@@ -14,19 +14,19 @@ struct Pixel {
   int row = 0;
 };
 
-Pixel pixel_of_organized(std::size_t index, const PixelWindow& window) {
+Pixel pixel_of_organized(std::size_t index, const scene::PixelWindow& window) {
   const auto width = static_cast<std::size_t>(window.width);
   return {window.x + static_cast<int>(index % width), window.y + static_cast<int>(index / width)};
 }
 
-Pixel pixel_on_ray(const Point& point, const Camera& camera) {
+Pixel pixel_on_ray(const cloud::Point& point, const scene::Camera& camera) {
   const Eigen::Vector2d place = camera.project_from_world(point.cast<double>());
   return {static_cast<int>(std::floor(place.x())), static_cast<int>(std::floor(place.y()))};
 }
 
 void check_consistent(const SceneToExport& scene) {
-  const Cloud& cloud = scene.cloud;
-  const PixelWindow& window = scene.record.window;
+  const cloud::Cloud& cloud = scene.cloud;
+  const scene::PixelWindow& window = scene.record.window;
   if (cloud.labels.size() != cloud.size()) throw_io_error("{}: the cloud has no labels", scene.entry.name);
   if (cloud.organized() && (cloud.width != static_cast<std::uint32_t>(window.width) ||
                             cloud.height != static_cast<std::uint32_t>(window.height)))
@@ -43,9 +43,9 @@ void check_consistent(const SceneToExport& scene) {
 SceneImage::SceneImage(const SceneToExport& scene)
     : scene_(scene), camera_(scene.record.scene.scanner), points_(camera_.width(), camera_.height(), -1) {
   check_consistent(scene);
-  const Cloud& cloud = scene.cloud;
+  const cloud::Cloud& cloud = scene.cloud;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_finite(cloud.points[i]) || (!cloud.sources.empty() && cloud.sources[i] != 0)) continue;
+    if (!cloud::is_finite(cloud.points[i]) || (!cloud.sources.empty() && cloud.sources[i] != 0)) continue;
     const Pixel pixel =
         cloud.organized() ? pixel_of_organized(i, scene.record.window) : pixel_on_ray(cloud.points[i], camera_);
     if (pixel.column >= 0 && pixel.column < points_.width && pixel.row >= 0 && pixel.row < points_.height)
@@ -71,7 +71,7 @@ Raster<int> SceneImage::labels() const {
   return labels;
 }
 
-Mask SceneImage::visible_mask(Label label) const {
+Mask SceneImage::visible_mask(cloud::Label label) const {
   Mask mask(points_.width, points_.height, 0);
   for (std::size_t i = 0; i < points_.values.size(); ++i)
     if (const int point = points_.values[i]; point >= 0)
@@ -90,7 +90,7 @@ std::vector<std::uint8_t> SceneImage::shaded_rgb() const {
     if (points_.values[i] < 0) continue;
     const auto point = static_cast<std::size_t>(points_.values[i]);
     const Vec3 place = scene_.cloud.points[point].cast<double>();
-    const Label label = scene_.cloud.labels[point];
+    const cloud::Label label = scene_.cloud.labels[point];
     const double cosine = std::max(0.0, normals.at(label, place).dot((lamp - place).normalized()));
     const Vec3 color = (kAmbient + (1.0 - kAmbient) * cosine) * (label > 0 ? tube_color : bin_color);
     for (int c = 0; c < 3; ++c)
@@ -99,9 +99,9 @@ std::vector<std::uint8_t> SceneImage::shaded_rgb() const {
   return rgb;
 }
 
-Mask mask_of(const std::vector<SeenPixel>& pixels, const Camera& camera) {
+Mask mask_of(const std::vector<scan::SeenPixel>& pixels, const scene::Camera& camera) {
   Mask mask(camera.width(), camera.height(), 0);
-  for (const SeenPixel& pixel : pixels) mask.at(pixel.column, pixel.row) = 255;
+  for (const scan::SeenPixel& pixel : pixels) mask.at(pixel.column, pixel.row) = 255;
   return mask;
 }
 
@@ -118,4 +118,4 @@ std::size_t pixels_of(const Mask& mask) {
   return static_cast<std::size_t>(std::ranges::count(mask.values, std::uint8_t{255}));
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "tubebin/export/scene_export.hpp"
+#include "export/scene_export.hpp"
 #include "tubebin/scan/visibility.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 
 /// Row by row from the top.
 template <typename Value>
@@ -35,22 +35,22 @@ class SceneImage {
   /// the cloud contradicts the record.
   explicit SceneImage(const SceneToExport& scene);
 
-  const Camera& camera() const { return camera_; }
+  const scene::Camera& camera() const { return camera_; }
   /// Metres along the optical axis; 0 where nothing was seen.
   Raster<float> depths() const;
   /// -1 where nothing was seen.
   Raster<int> labels() const;
-  Mask visible_mask(Label label) const;
+  Mask visible_mask(cloud::Label label) const;
   /// Three bytes a pixel: grey tubes in a darker bin, lit from the scanner, black where nothing was seen.
   std::vector<std::uint8_t> shaded_rgb() const;
 
  private:
   const SceneToExport& scene_;
-  Camera camera_;
+  scene::Camera camera_;
   Raster<int> points_;  // index into the cloud, -1: none
 };
 
-Mask mask_of(const std::vector<SeenPixel>& pixels, const Camera& camera);
+Mask mask_of(const std::vector<scan::SeenPixel>& pixels, const scene::Camera& camera);
 
 /// Smallest box around the mask's pixels: x, y, width, height; -1 -1 -1 -1 where there are none.
 struct PixelBox {
@@ -67,4 +67,4 @@ std::string png_of(const Mask& mask);
 std::string png_of(const Raster<std::uint16_t>& image);
 std::string png_of_rgb(const std::vector<std::uint8_t>& rgb, int width, int height);
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

@@ -2,11 +2,11 @@
 // Gazebo has) and without a <state>: the models' own poses are the settled ones.
 #include <cmath>
 
+#include "export/formats.hpp"
 #include "export/published_layout.hpp"
-#include "tubebin/export/formats.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 namespace {
 
 /// Stiffness (N/m), damping (N s/m) and contacts a pair of bodies, as in the published files. Gazebo derives ERP and
@@ -60,7 +60,7 @@ std::string pose_text(const Pose& pose) {
 Pose at(const Vec3& position) { return make_pose(Quat::Identity(), position); }
 
 /// SDFormat's cameras look along +x with z up, ours along +z with y down.
-Pose camera_pose(const Scanner& scanner) {
+Pose camera_pose(const scene::Scanner& scanner) {
   Eigen::Matrix3d optical_from_sdf;
   optical_from_sdf << 0, -1, 0, 0, 0, -1, 1, 0, 0;
   Pose pose = scanner.world_from_scanner();
@@ -70,7 +70,8 @@ Pose camera_pose(const Scanner& scanner) {
 
 class WorldWriter {
  public:
-  WorldWriter(const Scene& scene, const std::vector<Color>& colors, const PhysicsOptions& physics)
+  WorldWriter(const scene::Scene& scene, const std::vector<cloud::Color>& colors,
+              const physics::PhysicsOptions& physics)
       : scene_(scene), colors_(colors), physics_(physics) {}
 
   std::string write() {
@@ -92,7 +93,7 @@ class WorldWriter {
 
  private:
   void write_sensor() {
-    const Scanner& scanner = scene_.scanner;
+    const scene::Scanner& scanner = scene_.scanner;
     out_.element("model", named("scanner"), [&] {
       out_.text("static", "1");
       out_.text("pose", pose_text(camera_pose(scanner)));
@@ -156,7 +157,7 @@ class WorldWriter {
   void write_bin() {
     // In the order of bin_boxes().
     static constexpr const char* kNames[] = {"bottom", "west_wall", "east_wall", "south_wall", "north_wall"};
-    const std::vector<Box> boxes = bin_boxes(scene_.bin);
+    const std::vector<scene::Box> boxes = scene::bin_boxes(scene_.bin);
     out_.element("model", named("bin"), [&] {
       out_.text("static", "1");
       for (std::size_t i = 0; i < boxes.size(); ++i)
@@ -168,8 +169,8 @@ class WorldWriter {
   }
 
   void write_tube(std::size_t k) {
-    const PlacedTube& placed = scene_.tubes[k];
-    const Tube& tube = placed.tube;
+    const scene::PlacedTube& placed = scene_.tubes[k];
+    const tube::Tube& tube = placed.tube;
     const std::string name = std::to_string(k + 1);
     out_.element("model", named(name), [&] {
       out_.text("static", "0");
@@ -184,9 +185,9 @@ class WorldWriter {
     });
   }
 
-  void write_inertial(const Tube& tube) {
+  void write_inertial(const tube::Tube& tube) {
     if (tube.mass <= 0.0) return;  // unknown: Gazebo's own default
-    const MassProperties body = mass_properties(tube);
+    const tube::MassProperties body = tube::mass_properties(tube);
     out_.element("inertial", [&] {
       out_.text("pose", pose_text(at(body.center)));
       out_.number("mass", body.mass);
@@ -198,8 +199,8 @@ class WorldWriter {
     });
   }
 
-  void write_cylinder(const Tube& tube, std::size_t index, Color color) {
-    const Cylinder& cylinder = tube.cylinders[index];
+  void write_cylinder(const tube::Tube& tube, std::size_t index, cloud::Color color) {
+    const tube::Cylinder& cylinder = tube.cylinders[index];
     const Vec3& a = tube.nodes[static_cast<std::size_t>(cylinder.node_a)];
     const Vec3& b = tube.nodes[static_cast<std::size_t>(cylinder.node_b)];
     const Pose pose = make_pose(Quat::FromTwoVectors(Vec3::UnitZ(), b - a), 0.5 * (a + b));
@@ -211,14 +212,14 @@ class WorldWriter {
     });
   }
 
-  void write_joint(const Tube& tube, std::size_t node, Color color) {
+  void write_joint(const tube::Tube& tube, std::size_t node, cloud::Color color) {
     write_part(fmt::format("sphere-{}", node + 1), at(tube.nodes[node]), physics_.friction_tube, color,
                [&] { out_.element("sphere", [&] { out_.number("radius", tube.node_radii()[node]); }); });
   }
 
   /// The same shape to collide with and to look at.
   template <typename Shape>
-  void write_part(const std::string& name, const Pose& pose, double friction, Color color, const Shape& shape) {
+  void write_part(const std::string& name, const Pose& pose, double friction, cloud::Color color, const Shape& shape) {
     out_.element("collision", named("collision-" + name), [&] {
       out_.text("pose", pose_text(pose));
       out_.element("geometry", shape);
@@ -256,15 +257,15 @@ class WorldWriter {
     });
   }
 
-  const Scene& scene_;
-  const std::vector<Color>& colors_;
-  const PhysicsOptions& physics_;
+  const scene::Scene& scene_;
+  const std::vector<cloud::Color>& colors_;
+  const physics::PhysicsOptions& physics_;
   XmlWriter out_;
 };
 
 class SdfFormat : public ExportFormat {
  public:
-  explicit SdfFormat(const PhysicsOptions& physics) : physics_(physics) {}
+  explicit SdfFormat(const physics::PhysicsOptions& physics) : physics_(physics) {}
 
   std::string scene_path(const SceneEntry& entry) const override {
     return published_path(entry, "gazebo_worlds", ".world");
@@ -275,11 +276,13 @@ class SdfFormat : public ExportFormat {
   }
 
  private:
-  PhysicsOptions physics_;
+  physics::PhysicsOptions physics_;
 };
 
 }  // namespace
 
-std::unique_ptr<ExportFormat> sdf_format(const PhysicsOptions& physics) { return std::make_unique<SdfFormat>(physics); }
+std::unique_ptr<ExportFormat> sdf_format(const physics::PhysicsOptions& physics) {
+  return std::make_unique<SdfFormat>(physics);
+}
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tubebin {
+namespace tubebin::exports {
 namespace {
 
 /// Keeps the normal of the nearest surface that was offered.
@@ -20,13 +20,13 @@ struct Nearest {
 
 }  // namespace
 
-SurfaceNormals::SurfaceNormals(const Scene& scene) : bin_(scene.bin) {
-  for (const PlacedTube& placed : scene.tubes) {
+SurfaceNormals::SurfaceNormals(const scene::Scene& scene) : bin_(scene.bin) {
+  for (const scene::PlacedTube& placed : scene.tubes) {
     TubeParts parts{.wall_thickness = placed.tube.wall_thickness, .axes = {}, .free_ends = {}, .joints = {}};
     const std::vector<double> radii = placed.tube.node_radii();
     const std::vector<int> degrees = placed.tube.node_degrees();
     const auto is_free = [&](int node) { return degrees[static_cast<std::size_t>(node)] == 1; };
-    for (const Cylinder& cylinder : placed.tube.cylinders) {
+    for (const tube::Cylinder& cylinder : placed.tube.cylinders) {
       const Vec3 a = placed.node_in_world(cylinder.node_a), b = placed.node_in_world(cylinder.node_b);
       const Vec3 axis = (b - a).normalized();
       const double radius = placed.tube.radius_of(cylinder);
@@ -40,7 +40,7 @@ SurfaceNormals::SurfaceNormals(const Scene& scene) : bin_(scene.bin) {
   }
 }
 
-Vec3 SurfaceNormals::at(Label label, const Vec3& point) const {
+Vec3 SurfaceNormals::at(cloud::Label label, const Vec3& point) const {
   return label == 0 ? at_bin(point) : at_tube(tubes_.at(label - 1), point);
 }
 
@@ -77,4 +77,4 @@ Vec3 SurfaceNormals::at_bin(const Vec3& point) const {
   return nearest.normal;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

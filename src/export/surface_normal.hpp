@@ -6,14 +6,14 @@
 #include "tubebin/cloud/cloud.hpp"
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 
 class SurfaceNormals {
  public:
-  explicit SurfaceNormals(const Scene& scene);
+  explicit SurfaceNormals(const scene::Scene& scene);
 
   /// Unit normal of the labelled body's part of the surface that is nearest to the point (world frame, metres).
-  Vec3 at(Label label, const Vec3& point) const;
+  Vec3 at(cloud::Label label, const Vec3& point) const;
 
  private:
   struct TubeParts {
@@ -37,8 +37,8 @@ class SurfaceNormals {
   Vec3 at_tube(const TubeParts& tube, const Vec3& point) const;
   Vec3 at_bin(const Vec3& point) const;
 
-  Bin bin_;
+  scene::Bin bin_;
   std::vector<TubeParts> tubes_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

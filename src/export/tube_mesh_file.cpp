@@ -7,11 +7,11 @@
 
 #include "render/mesh.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 namespace {
 
 /// At most 0.5 % of the radius off, 0.06 mm of the paper's tubes.
-constexpr Fineness kFineness = {.facets = 32};
+constexpr render::Fineness kFineness = {.facets = 32};
 
 template <typename Value>
 void append(std::string& bytes, const Value& value) {
@@ -28,8 +28,8 @@ double largest_distance(const std::vector<Eigen::Vector3f>& points) {
 
 }  // namespace
 
-TubeMeshFile tube_mesh_file(const Tube& tube) {
-  const Mesh mesh = tube_mesh({tube, Pose::Identity()}, Vec3::Zero(), kFineness);
+TubeMeshFile tube_mesh_file(const tube::Tube& tube) {
+  const render::Mesh mesh = render::tube_mesh({tube, Pose::Identity()}, Vec3::Zero(), kFineness);
   TubeMeshFile file;
   file.ply = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment millimetres\nelement vertex {}\nproperty float x\n"
@@ -37,7 +37,7 @@ TubeMeshFile tube_mesh_file(const Tube& tube) {
       "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
       mesh.vertices.size(), mesh.indices.size() / 3);
   std::vector<Eigen::Vector3f> points_mm;
-  for (const Vertex& vertex : mesh.vertices) {
+  for (const render::Vertex& vertex : mesh.vertices) {
     points_mm.push_back(1000.0F * vertex.position);
     for (int i = 0; i < 3; ++i) append(file.ply, points_mm.back()[i]);
     for (int i = 0; i < 3; ++i) append(file.ply, vertex.normal[i]);
@@ -52,4 +52,4 @@ TubeMeshFile tube_mesh_file(const Tube& tube) {
   return file;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

@@ -5,7 +5,7 @@
 
 #include "tubebin/tube/tube.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 
 struct TubeMeshFile {
   std::string ply;  ///< binary, vertices with normals, triangles
@@ -13,6 +13,6 @@ struct TubeMeshFile {
   double diameter_mm = 0.0;  ///< largest distance of two vertices
 };
 
-TubeMeshFile tube_mesh_file(const Tube& tube);
+TubeMeshFile tube_mesh_file(const tube::Tube& tube);
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

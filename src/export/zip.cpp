@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace tubebin {
+namespace tubebin::exports {
 namespace {
 
 constexpr std::uint16_t kVersion = 20;           // 2.0
@@ -72,4 +72,4 @@ std::string format_zip(const Files& files) {
   return archive;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

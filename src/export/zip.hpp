@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "tubebin/export/scene_export.hpp"
+#include "export/scene_export.hpp"
 
-namespace tubebin {
+namespace tubebin::exports {
 
 /// The archive's bytes; equal files give equal bytes. Throws std::length_error beyond 4 GB.
 std::string format_zip(const Files& files);
 
-}  // namespace tubebin
+}  // namespace tubebin::exports

@@ -1,24 +1,24 @@
-#include "tubebin/modeling/labeling.hpp"
+#include "modeling/labeling.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-namespace tubebin {
+namespace tubebin::modeling {
 namespace {
 
 /// A cylinder of a surface, ready for distances. At a flat end the solid stops; at the others a sphere goes on.
 struct SolidCylinder {
-  Point start, axis;  ///< axis: unit
+  cloud::Point start, axis;  ///< axis: unit
   float length, radius;
   bool flat_start, flat_end;
   std::uint32_t surface;
 
   /// Signed distance to the surface of this cylinder with its spheres: negative inside. The union's surface is where
   /// the least of its parts' signed distances is zero.
-  float signed_distance(const Point& p) const {
-    const Point offset = p - start;
+  float signed_distance(const cloud::Point& p) const {
+    const cloud::Point offset = p - start;
     const float along = offset.dot(axis);
     const float squared = std::max(offset.squaredNorm() - along * along, 0.0f);
     if (along < 0.0f && !flat_start) return offset.norm() - radius;
@@ -58,8 +58,8 @@ class CylinderGrid {
     for (const SolidCylinder& c : cylinders) {
       const float pad = c.radius + reach;
       widest = std::max(widest, pad);
-      for (const Point& end : {c.start, Point(c.start + c.length * c.axis)})
-        box_.extend(end - Point::Constant(pad)).extend(end + Point::Constant(pad));
+      for (const cloud::Point& end : {c.start, cloud::Point(c.start + c.length * c.axis)})
+        box_.extend(end - cloud::Point::Constant(pad)).extend(end + cloud::Point::Constant(pad));
     }
     // Cubes about as wide as a tube hold few cylinders each; no more of them than a few per point of a large cloud.
     constexpr float kMostCubes = 1 << 21;
@@ -77,7 +77,7 @@ class CylinderGrid {
     for (const auto& [cube, cylinder] : entries) cylinders_[next[cube]++] = cylinder;
   }
 
-  std::span<const std::uint32_t> near(const Point& p) const {
+  std::span<const std::uint32_t> near(const cloud::Point& p) const {
     if (!box_.contains(p)) return {};
     const Eigen::Array3i at = ((p - box_.min()) / cube_).array().cast<int>().min(size_ - 1);
     const auto cube = static_cast<std::size_t>((at.z() * size_.y() + at.y()) * size_.x() + at.x());
@@ -92,7 +92,7 @@ class CylinderGrid {
     const float ball = c.radius + reach + cube_ / 4.0f;
     const int balls = static_cast<int>(c.length / step) + 2;
     for (int b = 0; b < balls; ++b) {
-      const Point center = c.start + std::min(static_cast<float>(b) * step, c.length) * c.axis;
+      const cloud::Point center = c.start + std::min(static_cast<float>(b) * step, c.length) * c.axis;
       const auto low = ((center - box_.min()).array() - ball) / cube_;
       const auto high = ((center - box_.min()).array() + ball) / cube_;
       const Eigen::Array3i first = low.floor().cast<int>().max(0), last = high.floor().cast<int>().min(size_ - 1);
@@ -137,7 +137,7 @@ std::vector<SolidCylinder> all_cylinders(const std::vector<TubeSurface>& surface
 
 }  // namespace
 
-std::vector<bool> within_surfaces(std::span<const Point> points, const std::vector<TubeSurface>& surfaces,
+std::vector<bool> within_surfaces(std::span<const cloud::Point> points, const std::vector<TubeSurface>& surfaces,
                                   double tolerance) {
   const std::vector<SolidCylinder> cylinders = all_cylinders(surfaces);
   std::vector<bool> within(points.size(), false);
@@ -152,8 +152,8 @@ std::vector<bool> within_surfaces(std::span<const Point> points, const std::vect
   return within;
 }
 
-std::vector<NearestSurface> nearest_surfaces(std::span<const Point> points, const std::vector<TubeSurface>& surfaces,
-                                             double reach) {
+std::vector<NearestSurface> nearest_surfaces(std::span<const cloud::Point> points,
+                                             const std::vector<TubeSurface>& surfaces, double reach) {
   const std::vector<SolidCylinder> cylinders = all_cylinders(surfaces);
   std::vector<NearestSurface> nearest(points.size());
   if (cylinders.empty()) return nearest;
@@ -183,4 +183,4 @@ std::vector<NearestSurface> nearest_surfaces(std::span<const Point> points, cons
   return nearest;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tubebin {
+namespace tubebin::modeling {
 
 /// The upper median of at least one value, which are reordered.
 template <typename Value>
@@ -14,4 +14,4 @@ Value median(std::vector<Value>& values) {
   return *middle;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace tubebin {
+#include "tubebin/core/version.hpp"
+
+namespace tubebin::modeling {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -55,7 +57,7 @@ double rounded(double metres) { return std::round(metres * 1e7) / 1e7; }
 
 Json place(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
 
-Json tube_json(const TubeModel& tube, std::size_t label, Color color, std::size_t points) {
+Json tube_json(const TubeModel& tube, std::size_t label, cloud::Color color, std::size_t points) {
   Json cylinders = Json::array(), joints = Json::array();
   for (std::size_t p = 0; p < tube.paths.size(); ++p) {
     const auto& [nodes, bridged] = tube.paths[p];
@@ -84,15 +86,15 @@ Json seconds_json(const StageSeconds& seconds) {
 
 }  // namespace
 
-std::string format_model_json(const ModelingResult& result, const std::vector<Color>& colors,
+std::string format_model_json(const ModelingResult& result, const std::vector<cloud::Color>& colors,
                               const std::function<void(Fields&)>& describe_options, bool with_seconds) {
   std::vector<std::size_t> points(result.tubes.size() + 1, 0);
-  for (const Label label : result.labels) ++points[label];
+  for (const cloud::Label label : result.labels) ++points[label];
   Json tubes = Json::array();
   for (std::size_t k = 0; k < result.tubes.size(); ++k)
     tubes.push_back(tube_json(result.tubes[k], k + 1, colors.at(k + 1), points[k + 1]));
   Json json = {{"format", "tubebin model 1"},
-               {"tool_version", TUBEBIN_VERSION},
+               {"tool_version", tool_version()},
                {"units", "metres, in the cloud's world frame"},
                {"filtered_points", result.labels.size()},
                {"unlabeled_points", points[0]},
@@ -116,4 +118,4 @@ std::string format_times_json(const StageSeconds& seconds, double read_seconds) 
   return json.dump() + "\n";
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -4,18 +4,18 @@
 #include <chrono>
 #include <cmath>
 
+#include "modeling/fitting/centerline_fitting.hpp"
+#include "modeling/fitting/centerline_pieces.hpp"
+#include "modeling/fitting/centerline_segmentation.hpp"
+#include "modeling/fitting/piece_cleaning.hpp"
+#include "modeling/input/normals.hpp"
+#include "modeling/input/radius_estimation.hpp"
+#include "modeling/joining/branch_joining.hpp"
+#include "modeling/joining/tube_joining.hpp"
+#include "modeling/labeling.hpp"
 #include "tubebin/core/error.hpp"
-#include "tubebin/modeling/branch_joining.hpp"
-#include "tubebin/modeling/centerline_fitting.hpp"
-#include "tubebin/modeling/centerline_pieces.hpp"
-#include "tubebin/modeling/centerline_segmentation.hpp"
-#include "tubebin/modeling/labeling.hpp"
-#include "tubebin/modeling/normals.hpp"
-#include "tubebin/modeling/piece_cleaning.hpp"
-#include "tubebin/modeling/radius_estimation.hpp"
-#include "tubebin/modeling/tube_joining.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 namespace {
 
 class Stopwatch {
@@ -114,11 +114,11 @@ bool drop_tubes_of_chance(ModelingResult& result, const std::vector<NearestSurfa
          }) > 0;
 }
 
-std::vector<Label> label_points(const FilteredCloud& cloud, ModelingResult& result) {
+std::vector<cloud::Label> label_points(const FilteredCloud& cloud, ModelingResult& result) {
   auto nearest = nearest_tubes(cloud, result);
   if (drop_tubes_of_chance(result, nearest)) nearest = nearest_tubes(cloud, result);
   result.noise = standard_deviation(nearest, result.radius);
-  std::vector<Label> labels;
+  std::vector<cloud::Label> labels;
   for (const NearestSurface& n : nearest) labels.push_back(n.surface == NearestSurface::kNone ? 0 : n.surface + 1);
   return labels;
 }
@@ -179,4 +179,4 @@ ModelingResult model_tubes(const ModelingInput& input, const ModelingOptions& op
   return result;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::modeling {
 
 double polyline_length(const std::vector<Vec3>& nodes) {
   double sum = 0.0;
@@ -46,4 +46,4 @@ std::size_t TubeModel::cylinder_count() const {
   return count;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

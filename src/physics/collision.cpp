@@ -6,7 +6,7 @@
 #include <numbers>
 #include <optional>
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 /// Parallel within this sine, two cylinders touch along a line and get a touch at each end of it.
@@ -23,7 +23,7 @@ Vec3 outward_end_direction(const Piece& piece, double parameter) {
   return parameter < 0.5 ? Vec3(-piece.direction) : piece.direction;
 }
 
-Vec3 project_on_box(const Box& box, const Vec3& point) { return point.cwiseMax(box.min()).cwiseMin(box.max()); }
+Vec3 project_on_box(const scene::Box& box, const Vec3& point) { return point.cwiseMax(box.min()).cwiseMin(box.max()); }
 
 /// Touch of two balls: the general case of round parts of two pieces.
 std::optional<Touch> touch_balls(const Vec3& p, double radius_p, const Vec3& q, double radius_q, double depth_min) {
@@ -150,7 +150,7 @@ void keep_deepest_of_each_spot(std::size_t begin, double spot, std::vector<Touch
 }
 
 /// The touch of a box (first) with a ball.
-std::optional<Touch> touch_box_with_ball(const Box& box, const Vec3& center, double radius, double depth_min) {
+std::optional<Touch> touch_box_with_ball(const scene::Box& box, const Vec3& center, double radius, double depth_min) {
   const Vec3 nearest = project_on_box(box, center);
   const Vec3 offset = center - nearest;
   const double distance = offset.norm();
@@ -183,14 +183,14 @@ std::vector<Eigen::Vector2d> disc_places() {
 }
 
 /// How deep a point lies in a box; negative beside it.
-double depth_in(const Box& box, const Vec3& point) {
+double depth_in(const scene::Box& box, const Vec3& point) {
   return (point - box.min()).cwiseMin(box.max() - point).minCoeff();
 }
 
 /// The point of a flat end that lies deepest in a box whose edge may cut into it between the rim points below.
-void add_deepest_end_touch(const Box& box, const Piece& piece, const Vec3& center, std::vector<Touch>& out) {
+void add_deepest_end_touch(const scene::Box& box, const Piece& piece, const Vec3& center, std::vector<Touch>& out) {
   const Vec3 extent = piece.radius * (1.0 - piece.direction.array().square()).max(0.0).sqrt();
-  const Box end(center - extent, center + extent);
+  const scene::Box end(center - extent, center + extent);
   if (!box.intersects(end)) return;
   const auto sides = ((end.min().array() < box.min().array()) || (end.max().array() > box.max().array())).count();
   if (sides < 2) return;  // before one face: the deepest is on the rim, toward the face
@@ -208,7 +208,7 @@ void add_deepest_end_touch(const Box& box, const Piece& piece, const Vec3& cente
 
 /// A flat end's rim against a box: the rim point that lies deepest and seven more around, which keep a standing
 /// tube upright.
-void add_rim_touches(const Box& box, const Piece& piece, bool at_a, double depth_min, std::vector<Touch>& out) {
+void add_rim_touches(const scene::Box& box, const Piece& piece, bool at_a, double depth_min, std::vector<Touch>& out) {
   const Vec3 center = at_a ? piece.axis.a : piece.axis.b;
   const Vec3 toward = project_on_box(box, center) - center;
   const double reach = piece.radius - depth_min;
@@ -227,7 +227,7 @@ void add_rim_touches(const Box& box, const Piece& piece, bool at_a, double depth
 }
 
 /// Whether all of a segment lies before one and the same face of a box.
-bool is_before_one_face(const Box& box, const Segment& segment) {
+bool is_before_one_face(const scene::Box& box, const Segment& segment) {
   int faces = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const auto side = [&](const Vec3& point) {
@@ -241,7 +241,7 @@ bool is_before_one_face(const Box& box, const Segment& segment) {
 }
 
 /// A piece across a box's edge, as a tube that leans over the wall.
-void add_edge_touch(const Box& box, const Piece& piece, double depth_min, std::vector<Touch>& out) {
+void add_edge_touch(const scene::Box& box, const Piece& piece, double depth_min, std::vector<Touch>& out) {
   // There the distance is linear along the axis: least at an end, which joints and rims stand for.
   if (is_before_one_face(box, piece.axis)) return;
   const auto project = [&](const Vec3& point) { return project_on_box(box, point); };
@@ -257,7 +257,7 @@ void add_edge_touch(const Box& box, const Piece& piece, double depth_min, std::v
   }
 }
 
-Box inflated(const Box& box, double margin) {
+scene::Box inflated(const scene::Box& box, double margin) {
   return {box.min() - Vec3::Constant(margin), box.max() + Vec3::Constant(margin)};
 }
 
@@ -273,12 +273,12 @@ std::optional<SegmentPair> closest_within(const Piece& first, const Piece& secon
 
 void find_near_pieces(const CollisionTube& first, const CollisionTube& second, double reach,
                       std::vector<PiecePair>& out) {
-  const Box reached = inflated(second.bounds, reach);
+  const scene::Box reached = inflated(second.bounds, reach);
   if (!first.bounds.intersects(reached)) return;
   for (std::uint32_t i = 0; i < first.pieces.size(); ++i) {
     const Piece& p = first.pieces[i];
     if (!p.bounds.intersects(reached)) continue;
-    const Box piece_reach = inflated(p.bounds, reach);
+    const scene::Box piece_reach = inflated(p.bounds, reach);
     for (std::uint32_t j = 0; j < second.pieces.size(); ++j) {
       const Piece& q = second.pieces[j];
       if (!piece_reach.intersects(q.bounds)) continue;
@@ -310,9 +310,9 @@ void collide(const CollisionTube& first, const CollisionTube& second, const std:
   keep_deepest_of_each_spot(begin, 0.5 * std::min(first.radius, second.radius), out);
 }
 
-void collide(const std::vector<Box>& bin, const CollisionTube& tube, double depth_min, std::vector<Touch>& out) {
-  for (const Box& box : bin) {
-    const Box reach = inflated(box, -std::min(depth_min, 0.0));
+void collide(const std::vector<scene::Box>& bin, const CollisionTube& tube, double depth_min, std::vector<Touch>& out) {
+  for (const scene::Box& box : bin) {
+    const scene::Box reach = inflated(box, -std::min(depth_min, 0.0));
     if (!reach.intersects(tube.bounds)) continue;
     const std::size_t begin = out.size();
     for (const Ball& joint : tube.joints)
@@ -327,4 +327,4 @@ void collide(const std::vector<Box>& bin, const CollisionTube& tube, double dept
   }
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

@@ -11,7 +11,7 @@
 #include "physics/convex.hpp"
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 
 /// The sharp rim lies (sqrt(2) - 1) * 1 mm = 0.41 mm off the rounded one.
 constexpr double kRimRounding = 0.001;
@@ -24,7 +24,7 @@ struct Piece {
   double radius = 0.0;
   bool flat_a = false;  ///< a free end: cut flat
   bool flat_b = false;
-  Box bounds;
+  scene::Box bounds;
 
   SolidCylinder solid(double eroded_by = 0.0) const;
 };
@@ -40,7 +40,7 @@ struct CollisionTube {
   std::vector<Piece> pieces;
   std::vector<Ball> joints;  ///< at nodes shared by two cylinders or more, and lone spheres
   double radius = 0.0;       ///< of the thickest part
-  Box bounds;
+  scene::Box bounds;
 };
 
 /// Where two bodies touch or nearly do.
@@ -50,12 +50,12 @@ struct Touch {
   double depth = 0.0;  ///< metres of interpenetration; negative: a gap
 };
 
-CollisionTube collision_tube(const PlacedTube& tube);
+CollisionTube collision_tube(const scene::PlacedTube& tube);
 /// As collision_tube, into an empty one or into that of the same tube in another pose, then without allocation.
-void update_collision_tube(const PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out);
+void update_collision_tube(const scene::PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out);
 
 /// The bin as it collides: bin_boxes() with the ground below the floor, so that nothing falls through.
-std::vector<Box> collision_boxes(const Bin& bin);
+std::vector<scene::Box> collision_boxes(const scene::Bin& bin);
 
 /// Indices of a piece of one tube and of a piece of another.
 struct PiecePair {
@@ -74,9 +74,10 @@ void collide(const CollisionTube& first, const CollisionTube& second, const std:
              double depth_min, std::vector<Touch>& out);
 
 /// Appends the touches of the bin (first) and a tube (second) with depth >= `depth_min`.
-void collide(const std::vector<Box>& bin, const CollisionTube& tube, double depth_min, std::vector<Touch>& out);
+void collide(const std::vector<scene::Box>& bin, const CollisionTube& tube, double depth_min, std::vector<Touch>& out);
 
 /// All touches of a scene, labelled. `depth_min` as above.
-std::vector<Contact> find_contacts(const std::vector<PlacedTube>& tubes, const Bin& bin, double depth_min);
+std::vector<scene::Contact> find_contacts(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin,
+                                          double depth_min);
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

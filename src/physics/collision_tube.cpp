@@ -1,6 +1,6 @@
 #include "physics/collision.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 
 SolidCylinder Piece::solid(double eroded_by) const {
   const double from = flat_a ? eroded_by : 0.0;
@@ -11,7 +11,7 @@ SolidCylinder Piece::solid(double eroded_by) const {
 namespace {
 
 /// What does not depend on the pose, and room for what does.
-void begin_parts(const Tube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
+void begin_parts(const tube::Tube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
   const std::vector<double> radii = tube.node_radii();
   out.radius = tube.radius_max();
   out.nodes.resize(tube.nodes.size());
@@ -22,7 +22,7 @@ void begin_parts(const Tube& tube, const std::vector<int>& node_degrees, Collisi
 
 }  // namespace
 
-void update_collision_tube(const PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
+void update_collision_tube(const scene::PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
   if (out.radius == 0.0) begin_parts(tube.tube, node_degrees, out);
   out.bounds.setEmpty();
   auto joint = out.joints.begin();
@@ -31,11 +31,11 @@ void update_collision_tube(const PlacedTube& tube, const std::vector<int>& node_
     if (node_degrees[i] == 1) continue;
     const Vec3 margin = Vec3::Constant(joint->radius);
     joint->center = out.nodes[i];
-    out.bounds.extend(Box(joint->center - margin, joint->center + margin));
+    out.bounds.extend(scene::Box(joint->center - margin, joint->center + margin));
     ++joint;
   }
   for (std::size_t i = 0; i < out.pieces.size(); ++i) {
-    const Cylinder& cylinder = tube.tube.cylinders[i];
+    const tube::Cylinder& cylinder = tube.tube.cylinders[i];
     Piece& piece = out.pieces[i];
     const auto a = static_cast<std::size_t>(cylinder.node_a), b = static_cast<std::size_t>(cylinder.node_b);
     piece.axis = {out.nodes[a], out.nodes[b]};
@@ -46,29 +46,31 @@ void update_collision_tube(const PlacedTube& tube, const std::vector<int>& node_
     const Vec3 margin = Vec3::Constant(piece.radius);
     piece.flat_a = node_degrees[a] == 1;
     piece.flat_b = node_degrees[b] == 1;
-    piece.bounds = Box(piece.axis.a.cwiseMin(piece.axis.b) - margin, piece.axis.a.cwiseMax(piece.axis.b) + margin);
+    piece.bounds =
+        scene::Box(piece.axis.a.cwiseMin(piece.axis.b) - margin, piece.axis.a.cwiseMax(piece.axis.b) + margin);
     out.bounds.extend(piece.bounds);
   }
 }
 
-CollisionTube collision_tube(const PlacedTube& tube) {
+CollisionTube collision_tube(const scene::PlacedTube& tube) {
   CollisionTube out;
   update_collision_tube(tube, tube.tube.node_degrees(), out);
   return out;
 }
 
-std::vector<Box> collision_boxes(const Bin& bin) {
+std::vector<scene::Box> collision_boxes(const scene::Bin& bin) {
   constexpr double kGroundDepth = 1.0;  // metres; far beyond what a tube covers in a step
-  std::vector<Box> boxes = bin_boxes(bin);
+  std::vector<scene::Box> boxes = scene::bin_boxes(bin);
   boxes.front().min().z() -= kGroundDepth;
   return boxes;
 }
 
-std::vector<Contact> find_contacts(const std::vector<PlacedTube>& tubes, const Bin& bin, double depth_min) {
+std::vector<scene::Contact> find_contacts(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin,
+                                          double depth_min) {
   std::vector<CollisionTube> shapes;
-  for (const PlacedTube& tube : tubes) shapes.push_back(collision_tube(tube));
-  const std::vector<Box> boxes = collision_boxes(bin);
-  std::vector<Contact> contacts;
+  for (const scene::PlacedTube& tube : tubes) shapes.push_back(collision_tube(tube));
+  const std::vector<scene::Box> boxes = collision_boxes(bin);
+  std::vector<scene::Contact> contacts;
   std::vector<Touch> touches;
   const auto append = [&](std::size_t label_a, std::size_t label_b) {
     for (const Touch& touch : touches)
@@ -87,4 +89,4 @@ std::vector<Contact> find_contacts(const std::vector<PlacedTube>& tubes, const B
   return contacts;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tubebin {
+namespace tubebin::physics {
 
 SegmentPair closest_on_segments(const Segment& first, const Segment& second) {
   const Vec3 d1 = first.b - first.a;
@@ -34,4 +34,4 @@ Vec3 SolidCylinder::project(const Vec3& point) const {
   return base + std::clamp(along, 0.0, length) * axis + inside;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

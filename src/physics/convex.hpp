@@ -5,7 +5,7 @@
 
 #include "tubebin/core/geometry.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 
 /// A segment of a tube's axis from a to b.
 struct Segment {
@@ -74,4 +74,4 @@ std::pair<Vec3, Vec3> closest_of_convex(const ProjectFirst& project_first, const
   return {first, second};
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

@@ -8,7 +8,7 @@
 #include "physics/rigid_world.hpp"
 #include "physics/spawn.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 /// Bodies at rest may be this far apart and still count as touching: twice what the contact layer leaves.
@@ -62,7 +62,8 @@ class Pace {
 };
 
 /// Steps until the pile is proven to be at rest; false at the time limit or when a tube is lost.
-bool settle(RigidWorld& world, const Bin& bin, const PhysicsOptions& options, DropFigures& figures, RestProof& proof) {
+bool settle(RigidWorld& world, const scene::Bin& bin, const PhysicsOptions& options, DropFigures& figures,
+            RestProof& proof) {
   Pace pace(options);
   double& time = figures.simulated_seconds;
   double last_fast = 0.0;  // seconds
@@ -83,7 +84,7 @@ bool settle(RigidWorld& world, const Bin& bin, const PhysicsOptions& options, Dr
   return true;
 }
 
-DropResult judge(const RigidWorld& world, const Bin& bin, const PhysicsOptions& options, DropFigures figures) {
+DropResult judge(const RigidWorld& world, const scene::Bin& bin, const PhysicsOptions& options, DropFigures figures) {
   DropResult result;
   result.tubes = world.tubes();
   result.contacts = find_contacts(result.tubes, bin, -kTouchingGap);
@@ -98,7 +99,7 @@ DropResult judge(const RigidWorld& world, const Bin& bin, const PhysicsOptions& 
 
 }  // namespace
 
-DropResult drop_tubes(const std::vector<Tube>& tubes, const Bin& bin, const PhysicsOptions& options,
+DropResult drop_tubes(const std::vector<tube::Tube>& tubes, const scene::Bin& bin, const PhysicsOptions& options,
                       std::uint64_t seed) {
   Random random(seed);
   const auto spawned = spawn(tubes, bin, options, random);
@@ -116,4 +117,4 @@ DropResult drop_tubes(const std::vector<Tube>& tubes, const Bin& bin, const Phys
   return judge(world, bin, options, figures);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

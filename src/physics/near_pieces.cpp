@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 /// A tube whose nodes are farther than this from where they were listed is listed anew (metres).
@@ -38,4 +38,4 @@ void NearPieces::follow(const std::vector<CollisionTube>& tubes) {
     }
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

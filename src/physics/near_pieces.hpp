@@ -6,7 +6,7 @@
 
 #include "physics/collision.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 
 class NearPieces {
  public:
@@ -23,4 +23,4 @@ class NearPieces {
   std::vector<std::vector<Vec3>> nodes_when_listed_;  ///< of each tube
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

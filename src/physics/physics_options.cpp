@@ -1,6 +1,6 @@
 #include "tubebin/physics/drop_simulator.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 
 void describe(Fields& fields, PhysicsOptions& o) {
   fields.number("gravity", o.gravity, {0.01, 100.0}, "m/s^2", "downward acceleration");
@@ -82,4 +82,4 @@ const char* to_string(DropFailure failure) {
   return "unknown";
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

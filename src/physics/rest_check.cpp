@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::physics {
 
 bool is_slow(const RigidWorld& world, const PhysicsOptions& options) {
   for (std::size_t i = 0; i < world.size(); ++i)
@@ -11,7 +11,7 @@ bool is_slow(const RigidWorld& world, const PhysicsOptions& options) {
   return true;
 }
 
-std::optional<std::size_t> find_outside(const RigidWorld& world, const Bin& bin) {
+std::optional<std::size_t> find_outside(const RigidWorld& world, const scene::Bin& bin) {
   for (std::size_t i = 0; i < world.size(); ++i) {
     const Vec3 center = world.center_of_mass(i);
     const bool inside =
@@ -21,18 +21,18 @@ std::optional<std::size_t> find_outside(const RigidWorld& world, const Bin& bin)
   return std::nullopt;
 }
 
-double deepest_penetration(const std::vector<Contact>& contacts) {
+double deepest_penetration(const std::vector<scene::Contact>& contacts) {
   double deepest = 0.0;
-  for (const Contact& contact : contacts) deepest = std::max(deepest, contact.depth);
+  for (const scene::Contact& contact : contacts) deepest = std::max(deepest, contact.depth);
   return deepest;
 }
 
-std::optional<std::size_t> find_floating(const std::vector<Contact>& contacts, std::size_t tube_count) {
+std::optional<std::size_t> find_floating(const std::vector<scene::Contact>& contacts, std::size_t tube_count) {
   std::vector<bool> held(tube_count + 1, false);
   held[0] = true;
   for (bool changed = true; changed;) {
     changed = false;
-    for (const Contact& contact : contacts) {
+    for (const scene::Contact& contact : contacts) {
       if (held[contact.label_a] == held[contact.label_b]) continue;
       held[contact.label_a] = held[contact.label_b] = true;
       changed = true;
@@ -43,4 +43,4 @@ std::optional<std::size_t> find_floating(const std::vector<Contact>& contacts, s
   return static_cast<std::size_t>(floating - held.begin()) - 1;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

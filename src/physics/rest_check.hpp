@@ -6,18 +6,18 @@
 
 #include "physics/rigid_world.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 
 /// Every tube slower than the options' thresholds.
 bool is_slow(const RigidWorld& world, const PhysicsOptions& options);
 
 /// The first tube whose centre of mass is not above the bin's floor between its walls.
-std::optional<std::size_t> find_outside(const RigidWorld& world, const Bin& bin);
+std::optional<std::size_t> find_outside(const RigidWorld& world, const scene::Bin& bin);
 
 /// Deepest interpenetration, metres; 0 where nothing touches.
-double deepest_penetration(const std::vector<Contact>& contacts);
+double deepest_penetration(const std::vector<scene::Contact>& contacts);
 
 /// The first tube from which no chain of contacts leads to the bin.
-std::optional<std::size_t> find_floating(const std::vector<Contact>& contacts, std::size_t tube_count);
+std::optional<std::size_t> find_floating(const std::vector<scene::Contact>& contacts, std::size_t tube_count);
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 /// Between starts that are followed; a proof is late by so much at most.
@@ -16,12 +16,12 @@ bool have_passed(double seconds, double since, double now) {
   return now - since >= seconds - kRounding;
 }
 
-std::vector<Vec3> nodes_in_world(const std::vector<PlacedTube>& tubes) {
+std::vector<Vec3> nodes_in_world(const std::vector<scene::PlacedTube>& tubes) {
   std::vector<Vec3> nodes;
   std::size_t count = 0;
-  for (const PlacedTube& tube : tubes) count += tube.tube.nodes.size();
+  for (const scene::PlacedTube& tube : tubes) count += tube.tube.nodes.size();
   nodes.reserve(count);
-  for (const PlacedTube& tube : tubes)
+  for (const scene::PlacedTube& tube : tubes)
     for (const Vec3& node : tube.tube.nodes) nodes.push_back(tube.world_from_tube * node);
   return nodes;
 }
@@ -44,4 +44,4 @@ bool RestProof::is_complete(double time) const {
   return !starts_.empty() && have_passed(options_.check_time, starts_.front().time, time);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

@@ -6,13 +6,13 @@
 
 #include "physics/rigid_world.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 
 /// Whether `seconds` have passed between two moments, up to the rounding of a sum of steps. All of simulated time.
 bool have_passed(double seconds, double since, double now);
 
 /// Every tube's nodes, one after another.
-std::vector<Vec3> nodes_in_world(const std::vector<PlacedTube>& tubes);
+std::vector<Vec3> nodes_in_world(const std::vector<scene::PlacedTube>& tubes);
 
 /// Farthest that any node moved between two moments of the same tubes, metres.
 double largest_movement(const std::vector<Vec3>& before, const std::vector<Vec3>& after);
@@ -44,4 +44,4 @@ class RestProof {
   std::optional<double> last_start_;  ///< seconds
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

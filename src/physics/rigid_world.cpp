@@ -10,7 +10,7 @@
 #include "physics/near_pieces.hpp"
 #include "physics/warm_start.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 /// ODE wants to be initialized once a process and once a thread.
@@ -24,7 +24,7 @@ void init_ode() {
 
 Vec3 to_vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 
-dMass to_ode(const MassProperties& properties) {
+dMass to_ode(const tube::MassProperties& properties) {
   const Eigen::Matrix3d& i = properties.inertia;
   dMass mass;
   dMassSetParameters(&mass, properties.mass, 0, 0, 0, i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2));
@@ -42,8 +42,8 @@ struct RigidWorld::Impl {
   dWorldID world = nullptr;
   dJointGroupID joints = nullptr;
   PhysicsOptions options;
-  std::vector<Box> bin;
-  std::vector<PlacedTube> tubes;  ///< poses are the bodies'
+  std::vector<scene::Box> bin;
+  std::vector<scene::PlacedTube> tubes;  ///< poses are the bodies'
   std::vector<dBodyID> bodies;
   std::vector<Vec3> centers;  ///< of mass, tube frame
   std::vector<std::vector<int>> degrees;
@@ -52,8 +52,8 @@ struct RigidWorld::Impl {
   std::vector<Touch> touches;
   std::vector<StepContact> contacts;  ///< of the last step
 
-  void add_body(const PlacedTube& tube) {
-    const MassProperties properties = mass_properties(tube.tube);
+  void add_body(const scene::PlacedTube& tube) {
+    const tube::MassProperties properties = tube::mass_properties(tube.tube);
     const dMass mass = to_ode(properties);
     const dBodyID body = dBodyCreate(world);
     dBodySetMass(body, &mass);
@@ -171,8 +171,8 @@ struct RigidWorld::Impl {
   }
 };
 
-RigidWorld::RigidWorld(const std::vector<PlacedTube>& tubes, const Bin& bin, const PhysicsOptions& options,
-                       std::uint64_t seed)
+RigidWorld::RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin,
+                       const PhysicsOptions& options, std::uint64_t seed)
     : impl_(std::make_unique<Impl>()) {
   init_ode();
   dRandSetSeed(static_cast<unsigned long>(seed & 0xffffffffu));  // quickstep shuffles its constraints with it
@@ -186,7 +186,7 @@ RigidWorld::RigidWorld(const std::vector<PlacedTube>& tubes, const Bin& bin, con
   dWorldSetContactMaxCorrectingVel(impl_->world, options.correcting_speed_max);
   dWorldSetContactSurfaceLayer(impl_->world, options.contact_layer);
   dWorldSetDamping(impl_->world, options.damping_linear, options.damping_angular);
-  for (const PlacedTube& tube : tubes) impl_->add_body(tube);
+  for (const scene::PlacedTube& tube : tubes) impl_->add_body(tube);
 }
 
 RigidWorld::~RigidWorld() {
@@ -203,11 +203,11 @@ void RigidWorld::step(const StepSettings& settings) {
   }
 }
 
-const std::vector<PlacedTube>& RigidWorld::tubes() const { return impl_->tubes; }
+const std::vector<scene::PlacedTube>& RigidWorld::tubes() const { return impl_->tubes; }
 Pose RigidWorld::pose(std::size_t tube) const { return impl_->tubes[tube].world_from_tube; }
 Vec3 RigidWorld::center_of_mass(std::size_t tube) const { return to_vec(dBodyGetPosition(impl_->bodies[tube])); }
 double RigidWorld::speed(std::size_t tube) const { return to_vec(dBodyGetLinearVel(impl_->bodies[tube])).norm(); }
 double RigidWorld::turn_rate(std::size_t tube) const { return to_vec(dBodyGetAngularVel(impl_->bodies[tube])).norm(); }
 std::size_t RigidWorld::size() const { return impl_->bodies.size(); }
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

@@ -7,7 +7,7 @@
 #include "physics/collision.hpp"
 #include "tubebin/physics/drop_simulator.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 
 /// How one step is taken.
 struct StepSettings {
@@ -20,14 +20,15 @@ StepSettings step_settings(const PhysicsOptions& options);
 
 class RigidWorld {
  public:
-  RigidWorld(const std::vector<PlacedTube>& tubes, const Bin& bin, const PhysicsOptions& options, std::uint64_t seed);
+  RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin, const PhysicsOptions& options,
+             std::uint64_t seed);
   ~RigidWorld();
   RigidWorld(const RigidWorld&) = delete;
   RigidWorld& operator=(const RigidWorld&) = delete;
 
   void step(const StepSettings& settings);
 
-  const std::vector<PlacedTube>& tubes() const;
+  const std::vector<scene::PlacedTube>& tubes() const;
   /// World pose of one tube's frame.
   Pose pose(std::size_t tube) const;
   Vec3 center_of_mass(std::size_t tube) const;
@@ -40,4 +41,4 @@ class RigidWorld {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

@@ -5,22 +5,22 @@
 
 #include "physics/collision.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 constexpr int kOrientationTries = 1000;
 
-Box bounds_of(const Tube& tube, const Quat& rotation) {
-  Box bounds;
+scene::Box bounds_of(const tube::Tube& tube, const Quat& rotation) {
+  scene::Box bounds;
   for (const Vec3& node : tube.nodes) bounds.extend(rotation * node);
   return {bounds.min() - Vec3::Constant(tube.radius_max()), bounds.max() + Vec3::Constant(tube.radius_max())};
 }
 
-bool fits_between_walls(const Box& bounds, const Bin& bin, double clearance) {
+bool fits_between_walls(const scene::Box& bounds, const scene::Bin& bin, double clearance) {
   return bounds.sizes().x() + 2.0 * clearance <= bin.length && bounds.sizes().y() + 2.0 * clearance <= bin.width;
 }
 
-std::optional<Quat> fitting_rotation(const Tube& tube, const Bin& bin, double clearance, Random& random) {
+std::optional<Quat> fitting_rotation(const tube::Tube& tube, const scene::Bin& bin, double clearance, Random& random) {
   Quat rotation = Quat::Identity();
   for (int i = 0; i < kOrientationTries; ++i) {
     if (fits_between_walls(bounds_of(tube, rotation), bin, clearance)) return rotation;
@@ -31,7 +31,9 @@ std::optional<Quat> fitting_rotation(const Tube& tube, const Bin& bin, double cl
 
 /// How far from the bin's middle a tube may start, as a share of the room between the walls: one that stands taller
 /// than the walls falls over, and from beside a wall it would fall out.
-double steadiness(const Box& bounds, const Bin& bin) { return std::min(1.0, bin.height / bounds.sizes().z()); }
+double steadiness(const scene::Box& bounds, const scene::Bin& bin) {
+  return std::min(1.0, bin.height / bounds.sizes().z());
+}
 
 bool overlaps(const CollisionTube& shape, const std::vector<CollisionTube>& placed, double clearance) {
   std::vector<Touch> touches;
@@ -66,18 +68,18 @@ std::optional<std::pair<CollisionTube, double>> raised_until_free(const Collisio
 
 }  // namespace
 
-std::optional<std::vector<PlacedTube>> spawn(const std::vector<Tube>& tubes, const Bin& bin,
-                                             const PhysicsOptions& options, Random& random) {
+std::optional<std::vector<scene::PlacedTube>> spawn(const std::vector<tube::Tube>& tubes, const scene::Bin& bin,
+                                                    const PhysicsOptions& options, Random& random) {
   const double clearance = options.spawn_clearance;
-  std::vector<PlacedTube> spawned;
+  std::vector<scene::PlacedTube> spawned;
   std::vector<CollisionTube> placed;
-  for (const Tube& tube : tubes) {
+  for (const tube::Tube& tube : tubes) {
     const std::optional<Quat> rotation = fitting_rotation(tube, bin, clearance, random);
     if (!rotation) return std::nullopt;
-    const Box bounds = bounds_of(tube, *rotation);
+    const scene::Box bounds = bounds_of(tube, *rotation);
     const Vec3 room = steadiness(bounds, bin) *
                       (0.5 * (Vec3(bin.length, bin.width, 0.0) - bounds.sizes()) - Vec3::Constant(clearance));
-    PlacedTube lowest{tube, Pose::Identity()};
+    scene::PlacedTube lowest{tube, Pose::Identity()};
     CollisionTube lowest_shape;
     double top_max = std::numeric_limits<double>::infinity();
     for (int i = 0; i < options.spawn_tries; ++i) {
@@ -97,4 +99,4 @@ std::optional<std::vector<PlacedTube>> spawn(const std::vector<Tube>& tubes, con
   return spawned;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

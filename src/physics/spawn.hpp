@@ -7,12 +7,12 @@
 #include "tubebin/core/random.hpp"
 #include "tubebin/physics/drop_simulator.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 
 /// Poses for all tubes: above the rim, within the bin's inner walls seen from above, `spawn_clearance` apart.
 /// A tube keeps the orientation that it was generated with if it fits between the walls, else it is turned at
 /// random until it does. Empty where a tube fits in no orientation.
-std::optional<std::vector<PlacedTube>> spawn(const std::vector<Tube>& tubes, const Bin& bin,
-                                             const PhysicsOptions& options, Random& random);
+std::optional<std::vector<scene::PlacedTube>> spawn(const std::vector<tube::Tube>& tubes, const scene::Bin& bin,
+                                                    const PhysicsOptions& options, Random& random);
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 /// In the order of contacts; the bin comes before all tubes.
@@ -35,4 +35,4 @@ ContactLoad WarmStart::start(StepContact& contact, double share, double reach, b
   return {scale * old->load.force_on_second, scale * old->load.torque_on_first, scale * old->load.torque_on_second};
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

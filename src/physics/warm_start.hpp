@@ -10,7 +10,7 @@
 
 #include "physics/collision.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 
 /// In place of a tube's index: the bin.
 constexpr std::size_t kBinBody = static_cast<std::size_t>(-1);
@@ -52,4 +52,4 @@ class WarmStart {
   std::size_t begin_ = 0;  ///< of those that are not of bodies before the last contact's
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::render {
 namespace {
 
 class MeshBuilder {
@@ -65,7 +65,7 @@ class MeshBuilder {
   }
 
   /// The face of a box across `axis`, at its upper or lower side.
-  void add_face(const Box& box, int axis, bool upper) {
+  void add_face(const scene::Box& box, int axis, bool upper) {
     const int j = (axis + 1) % 3, k = (axis + 2) % 3;
     const Vec3 size = box.sizes();
     const int columns = steps_over(size[j]), rows = steps_over(size[k]);
@@ -191,17 +191,18 @@ class MeshBuilder {
 namespace {
 
 /// In world axes.
-std::vector<Vec3> arms_in_world(const PlacedTube& placed, int node, std::size_t except = static_cast<std::size_t>(-1)) {
+std::vector<Vec3> arms_in_world(const scene::PlacedTube& placed, int node,
+                                std::size_t except = static_cast<std::size_t>(-1)) {
   std::vector<Vec3> arms = placed.tube.directions_from(node, except);
   for (Vec3& arm : arms) arm = placed.world_from_tube.linear() * arm;
   return arms;
 }
 
-void add_pipes(const PlacedTube& placed, MeshBuilder& builder) {
-  const Tube& tube = placed.tube;
+void add_pipes(const scene::PlacedTube& placed, MeshBuilder& builder) {
+  const tube::Tube& tube = placed.tube;
   const std::vector<double> radii = tube.node_radii();
   for (std::size_t i = 0; i < tube.cylinders.size(); ++i) {
-    const Cylinder& cylinder = tube.cylinders[i];
+    const tube::Cylinder& cylinder = tube.cylinders[i];
     const double radius = tube.radius_of(cylinder);
     builder.add_pipe(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b), radius,
                      radius - tube.wall_thickness, arms_in_world(placed, cylinder.node_a, i),
@@ -214,9 +215,9 @@ void add_pipes(const PlacedTube& placed, MeshBuilder& builder) {
   }
 }
 
-void add_solids(const PlacedTube& placed, const std::vector<int>& degrees, MeshBuilder& builder) {
-  const Tube& tube = placed.tube;
-  for (const Cylinder& cylinder : tube.cylinders)
+void add_solids(const scene::PlacedTube& placed, const std::vector<int>& degrees, MeshBuilder& builder) {
+  const tube::Tube& tube = placed.tube;
+  for (const tube::Cylinder& cylinder : tube.cylinders)
     builder.add_cylinder(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b),
                          tube.radius_of(cylinder));
   const std::vector<double> radii = tube.node_radii();
@@ -227,7 +228,7 @@ void add_solids(const PlacedTube& placed, const std::vector<int>& degrees, MeshB
 
 }  // namespace
 
-Mesh tube_mesh(const PlacedTube& placed, const Vec3& origin, const Fineness& fineness) {
+Mesh tube_mesh(const scene::PlacedTube& placed, const Vec3& origin, const Fineness& fineness) {
   Mesh mesh;
   MeshBuilder builder(mesh, origin, fineness);
   const std::vector<int> degrees = placed.tube.node_degrees();
@@ -237,10 +238,10 @@ Mesh tube_mesh(const PlacedTube& placed, const Vec3& origin, const Fineness& fin
   return mesh;
 }
 
-void add_box(const Box& box, const Vec3& origin, const Fineness& fineness, Mesh& mesh) {
+void add_box(const scene::Box& box, const Vec3& origin, const Fineness& fineness, Mesh& mesh) {
   MeshBuilder builder(mesh, origin, fineness);
   for (int axis = 0; axis < 3; ++axis)
     for (const bool upper : {false, true}) builder.add_face(box, axis, upper);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -7,7 +7,7 @@
 
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 
 struct Vertex {
   Eigen::Vector3f position;
@@ -29,9 +29,9 @@ struct Fineness {
 };
 
 /// Cylinders with flat caps and spheres at the joints, around `origin` in world axes. A hollow tube's free ends are open.
-Mesh tube_mesh(const PlacedTube& tube, const Vec3& origin, const Fineness& fineness);
+Mesh tube_mesh(const scene::PlacedTube& tube, const Vec3& origin, const Fineness& fineness);
 
 /// A box's faces, around `origin` in world axes.
-void add_box(const Box& box, const Vec3& origin, const Fineness& fineness, Mesh& mesh);
+void add_box(const scene::Box& box, const Vec3& origin, const Fineness& fineness, Mesh& mesh);
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -5,7 +5,7 @@
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/render/preview.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 
 std::vector<std::uint8_t> encode_png(const Image& image) {
   png_image header{};
@@ -27,4 +27,4 @@ void write_png(const std::string& path, const Image& image) {
   write_file_atomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -7,7 +7,7 @@
 #include "render/opengl/views.hpp"
 #endif
 
-namespace tubebin {
+namespace tubebin::render {
 
 namespace {
 
@@ -23,12 +23,12 @@ namespace {
 
 bool can_render() { return load_opengl(); }
 
-Image render_preview(const Scene& scene, int width, int height) {
+Image render_preview(const scene::Scene& scene, int width, int height) {
   if (!can_render()) refuse();
   return draw_lit_view(scene, width, height);
 }
 
-Image render_labels(const Scene& scene, const PixelWindow& window) {
+Image render_labels(const scene::Scene& scene, const scene::PixelWindow& window) {
   if (window.width == 0 || window.height == 0) return {};
   if (!can_render()) refuse();
   return draw_label_view(scene, window);
@@ -38,10 +38,10 @@ Image render_labels(const Scene& scene, const PixelWindow& window) {
 
 bool can_render() { return false; }
 
-Image render_preview(const Scene&, int, int) { refuse(); }
+Image render_preview(const scene::Scene&, int, int) { refuse(); }
 
-Image render_labels(const Scene&, const PixelWindow&) { refuse(); }
+Image render_labels(const scene::Scene&, const scene::PixelWindow&) { refuse(); }
 
 #endif
 
-}  // namespace tubebin
+}  // namespace tubebin::render

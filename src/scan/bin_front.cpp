@@ -3,13 +3,13 @@
 #include "scan/solid_outline.hpp"
 #include "scan/view_window.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
-BinFront::BinFront(const Scene& scene, const Camera& camera)
+BinFront::BinFront(const scene::Scene& scene, const scene::Camera& camera)
     : camera_(camera), depth_min_(scene.scanner.range_min - kDepthTolerance) {
-  for (const Box& box : scene_solids({scene.bin, scene.scanner, {}}).bin)
+  for (const scene::Box& box : scene_solids({scene.bin, scene.scanner, {}}).bin)
     boxes_.push_back({box, view_window({{}, {}, {box}}, SeenBodies::bin_and_tubes, camera, scene.scanner.range_min),
-                      tubebin::nearest_depth(box, camera)});
+                      scan::nearest_depth(box, camera)});
 }
 
 double BinFront::first_before(double depth, int column, int row) {
@@ -24,4 +24,4 @@ double BinFront::first_before(double depth, int column, int row) {
   return inside_.empty() ? std::numeric_limits<double>::infinity() : first_boundary(inside_, depth_min_);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

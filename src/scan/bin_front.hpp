@@ -4,11 +4,11 @@
 #include "scan/ray_caster.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 /// A body's surface that a pixel's ray meets.
 struct Layer {
-  Label label = 0;
+  cloud::Label label = 0;
   double depth = 0.0;
 
   /// At equal depths the lower label is in front, as in scan().
@@ -21,22 +21,22 @@ struct Layer {
 class BinFront {
  public:
   struct Part {
-    Box box;
-    PixelWindow window;
+    scene::Box box;
+    scene::PixelWindow window;
     double nearest_depth = 0.0;
   };
 
-  BinFront(const Scene& scene, const Camera& camera);
+  BinFront(const scene::Scene& scene, const scene::Camera& camera);
 
   const std::vector<Part>& parts() const { return boxes_; }
   /// The bin's first surface along the pixel's ray, if it may be before `depth`; else infinity.
   double first_before(double depth, int column, int row);
 
  private:
-  const Camera& camera_;
+  const scene::Camera& camera_;
   double depth_min_;
   std::vector<Part> boxes_;
   std::vector<Interval> inside_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 /// A formula's interval of one ray, as `cut` writes it.
@@ -57,4 +57,4 @@ Interval intersect(const Eigen::AlignedBox3d& box, const Vec3& inverse_direction
   return interval_of([&](IntervalOf<double>& inside) { intersect(box, components(inverse_direction), inside); });
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -7,7 +7,7 @@
 
 #include "tubebin/core/geometry.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 /// The part [begin, end] of a ray; empty unless begin <= end.
 struct Interval {
@@ -87,6 +87,6 @@ template <typename Real>
 void intersect(const Eigen::AlignedBox3d& box, const DirectionOf<Real>& inverse_direction, IntervalOf<Real>& inside);
 Interval intersect(const Eigen::AlignedBox3d& box, const Vec3& inverse_direction);
 
-}  // namespace tubebin
+}  // namespace tubebin::scan
 
 #include "scan/exact_shapes_formulas.hpp"

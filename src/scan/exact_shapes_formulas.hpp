@@ -6,7 +6,7 @@
 
 #include "scan/exact_shapes.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 template <typename Real>
 [[gnu::always_inline]] inline void square_root(const Real& from, Real& to) {
@@ -88,4 +88,4 @@ template <typename Real>
   inside.end = end_xy < end_z ? end_xy : end_z;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

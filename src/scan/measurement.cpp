@@ -5,7 +5,7 @@
 
 #include "scan/surface_normal.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 /// The growth has a pole at 90 degrees, and nobody has measured it beyond.
@@ -29,9 +29,10 @@ double quantize_depth(double depth, double step, double reference_distance) {
   return 1.0 / (std::max(1.0, std::round(1.0 / (depth * disparity_step))) * disparity_step);
 }
 
-Reconstruction::Reconstruction(const Scanner& scanner)
-    : scanner_(scanner), focal_length_(Camera(scanner).focal_length() * (1.0 + scanner.effects.calibration.focal)) {
-  const CalibrationError& error = scanner.effects.calibration;
+Reconstruction::Reconstruction(const scene::Scanner& scanner)
+    : scanner_(scanner),
+      focal_length_(scene::Camera(scanner).focal_length() * (1.0 + scanner.effects.calibration.focal)) {
+  const scene::CalibrationError& error = scanner.effects.calibration;
   const Quat rotation = Eigen::AngleAxisd(radians(error.rotation_deg.z()), Vec3::UnitZ()) *
                         Eigen::AngleAxisd(radians(error.rotation_deg.y()), Vec3::UnitY()) *
                         Eigen::AngleAxisd(radians(error.rotation_deg.x()), Vec3::UnitX());
@@ -44,8 +45,8 @@ Vec3 Reconstruction::point_in_world(int column, int row, double depth) const {
   return world_from_camera_ * Vec3(depth * x, depth * y, depth);
 }
 
-Measurement::Measurement(const Scene& scene, const RayCaster& caster, const Camera& camera, const PixelWindow& window,
-                         std::uint64_t seed)
+Measurement::Measurement(const scene::Scene& scene, const RayCaster& caster, const scene::Camera& camera,
+                         const scene::PixelWindow& window, std::uint64_t seed)
     : effects_(scene.scanner.effects), caster_(caster), camera_(camera), window_(window), seed_(seed) {
   if (effects_.projector.enabled) projector_.emplace(scene);
   if (effects_.range_noise.sigma > 0.0)
@@ -83,7 +84,7 @@ std::optional<Measurement::Surface> Measurement::look(int column, int row) const
 
 /// Light that a matt surface returns, and the mirror image of the lamp on a shiny one.
 bool Measurement::gives_signal(const Surface& surface, int column, int row) const {
-  const DropOuts& dropouts = effects_.dropouts;
+  const scene::DropOuts& dropouts = effects_.dropouts;
   const Vec3 lamp = projector_ ? projector_->position_in_world() : Vec3(camera_.world_from_scanner().translation());
   const double distance = (lamp - surface.p_in_world).norm();
   const Vec3 to_lamp = (lamp - surface.p_in_world) / distance;
@@ -98,8 +99,8 @@ bool Measurement::gives_signal(const Surface& surface, int column, int row) cons
          dropouts.signal_min;
 }
 
-double Measurement::reflectivity(Label label) const {
-  const DropOuts& dropouts = effects_.dropouts;
+double Measurement::reflectivity(cloud::Label label) const {
+  const scene::DropOuts& dropouts = effects_.dropouts;
   if (label == 0) return dropouts.bin_reflectivity;
   return dropouts.tube_reflectivity_min + (dropouts.tube_reflectivity_max - dropouts.tube_reflectivity_min) *
                                               noise(NoiseStream::tube_reflectivity).uniform(static_cast<int>(label), 0);
@@ -107,7 +108,7 @@ double Measurement::reflectivity(Label label) const {
 
 /// The footprint's corners and middle stand for its area.
 Hit Measurement::mix(const Surface& surface, int column, int row) const {
-  const MixedPixels& mixed = effects_.mixed_pixels;
+  const scene::MixedPixels& mixed = effects_.mixed_pixels;
   if (mixed.share <= 0.0 || noise(NoiseStream::mixed_pixels).uniform(column, row) >= mixed.share) return surface.hit;
   Hit nearest = surface.hit;
   double farthest = surface.hit.depth, sum = surface.hit.depth;
@@ -126,7 +127,7 @@ Hit Measurement::mix(const Surface& surface, int column, int row) const {
 }
 
 double Measurement::range_noise(const Surface& surface, double depth, int column, int row) const {
-  const RangeNoise& range = effects_.range_noise;
+  const scene::RangeNoise& range = effects_.range_noise;
   if (range.sigma <= 0.0) return 0.0;
   const auto index = static_cast<std::size_t>(row - window_.y) * static_cast<std::size_t>(window_.width) +
                      static_cast<std::size_t>(column - window_.x);
@@ -135,9 +136,9 @@ double Measurement::range_noise(const Surface& surface, double depth, int column
 }
 
 double Measurement::outlier_offset(int column, int row) const {
-  const Outliers& outliers = effects_.outliers;
+  const scene::Outliers& outliers = effects_.outliers;
   if (outliers.share <= 0.0 || noise(NoiseStream::outlier_choice).uniform(column, row) >= outliers.share) return 0.0;
   return outliers.spread * (2.0 * noise(NoiseStream::outlier_depth).uniform(column, row) - 1.0);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

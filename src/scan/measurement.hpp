@@ -7,7 +7,7 @@
 #include "scan/projector.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 /// Growth of the range noise with the incidence angle (radians), 1 head-on.
 double incidence_growth(double incidence, double gain);
@@ -18,11 +18,11 @@ double quantize_depth(double depth, double step, double reference_distance);
 /// The camera that places points in the world, with its calibration error.
 class Reconstruction {
  public:
-  explicit Reconstruction(const Scanner& scanner);
+  explicit Reconstruction(const scene::Scanner& scanner);
   Vec3 point_in_world(int column, int row, double depth) const;
 
  private:
-  const Scanner& scanner_;
+  const scene::Scanner& scanner_;
   double focal_length_;  ///< pixels
   Pose world_from_camera_;
 };
@@ -30,8 +30,8 @@ class Reconstruction {
 class Measurement {
  public:
   /// `window`: the pixels that will be asked for.
-  Measurement(const Scene& scene, const RayCaster& caster, const Camera& camera, const PixelWindow& window,
-              std::uint64_t seed);
+  Measurement(const scene::Scene& scene, const RayCaster& caster, const scene::Camera& camera,
+              const scene::PixelWindow& window, std::uint64_t seed);
 
   /// Depth (metres, as measured) and label of a pixel; nothing where it gives no point.
   std::optional<Hit> measure(int column, int row) const;
@@ -50,16 +50,16 @@ class Measurement {
   Hit mix(const Surface& surface, int column, int row) const;
   double range_noise(const Surface& surface, double depth, int column, int row) const;
   double outlier_offset(int column, int row) const;
-  double reflectivity(Label label) const;
+  double reflectivity(cloud::Label label) const;
   PixelNoise noise(NoiseStream stream) const { return {seed_, stream}; }
 
-  const ScannerEffects& effects_;
+  const scene::ScannerEffects& effects_;
   const RayCaster& caster_;
-  const Camera& camera_;
-  PixelWindow window_;
+  const scene::Camera& camera_;
+  scene::PixelWindow window_;
   std::uint64_t seed_;
   std::optional<Projector> projector_;
   std::vector<double> range_normals_;  ///< of the window's pixels
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -2,13 +2,13 @@
 #include "tubebin/core/random.hpp"
 #include "tubebin/scan/scanner.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 /// Pixels without a point go, since the cloud is no image.
-void append_points(const Cloud& from, std::uint32_t source, Cloud& to) {
+void append_points(const cloud::Cloud& from, std::uint32_t source, cloud::Cloud& to) {
   for (std::size_t i = 0; i < from.size(); ++i) {
-    if (!is_finite(from.points[i])) continue;
+    if (!cloud::is_finite(from.points[i])) continue;
     to.points.push_back(from.points[i]);
     to.colors.push_back(from.colors[i]);
     to.labels.push_back(from.labels[i]);
@@ -24,7 +24,7 @@ std::uint64_t source_seed(std::uint64_t seed, std::uint32_t source) {
 
 }  // namespace
 
-MergedScan scan_from_all(const Scene& scene, std::uint64_t seed) {
+MergedScan scan_from_all(const scene::Scene& scene, std::uint64_t seed) {
   if (scene.further_scanners.empty()) return {scan(scene, seed), {}};
   MergedScan merged;
   merged.tube_pixels.assign(scene.tubes.size(), 0);
@@ -42,10 +42,10 @@ MergedScan scan_from_all(const Scene& scene, std::uint64_t seed) {
   return merged;
 }
 
-MergedScan scan_exactly_from_all(Scene scene) {
+MergedScan scan_exactly_from_all(scene::Scene scene) {
   scene.scanner.effects = {};
-  for (Scanner& scanner : scene.further_scanners) scanner.effects = {};
+  for (scene::Scanner& scanner : scene.further_scanners) scanner.effects = {};
   return scan_from_all(scene);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-namespace tubebin {
+namespace tubebin::scan {
 
-OcclusionCounter::OcclusionCounter(const Scene& scene, const Camera& camera)
+OcclusionCounter::OcclusionCounter(const scene::Scene& scene, const scene::Camera& camera)
     : bin_(scene, camera), bodies_(scene.tubes.size() + 1), pixels_(bodies_ * bodies_, 0) {}
 
 void OcclusionCounter::count(std::span<const Layer> tubes, int column, int row) {
@@ -17,12 +17,13 @@ void OcclusionCounter::count(std::span<const Layer> tubes, int column, int row) 
   }
 }
 
-std::vector<Occlusion> OcclusionCounter::occlusions() const {
-  std::vector<Occlusion> occlusions;
+std::vector<scene::Occlusion> OcclusionCounter::occlusions() const {
+  std::vector<scene::Occlusion> occlusions;
   for (std::size_t i = 0; i < pixels_.size(); ++i)
     if (pixels_[i] > 0)
-      occlusions.push_back({static_cast<Label>(i % bodies_), static_cast<Label>(i / bodies_), pixels_[i]});
+      occlusions.push_back(
+          {static_cast<cloud::Label>(i % bodies_), static_cast<cloud::Label>(i / bodies_), pixels_[i]});
   return occlusions;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

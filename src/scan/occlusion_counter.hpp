@@ -7,17 +7,17 @@
 #include "scan/bin_front.hpp"
 #include "tubebin/scene/pile_relations.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 class OcclusionCounter {
  public:
-  OcclusionCounter(const Scene& scene, const Camera& camera);
+  OcclusionCounter(const scene::Scene& scene, const scene::Camera& camera);
 
   const BinFront& bin() const { return bin_; }
   /// `tubes`: all that the pixel's ray meets, at least one.
   void count(std::span<const Layer> tubes, int column, int row);
   /// Sorted by behind, then front.
-  std::vector<Occlusion> occlusions() const;
+  std::vector<scene::Occlusion> occlusions() const;
 
  private:
   BinFront bin_;
@@ -25,4 +25,4 @@ class OcclusionCounter {
   std::vector<std::size_t> pixels_;  ///< at behind * bodies_ + front
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -6,15 +6,16 @@
 #include "scan/solid_outline.hpp"
 #include "scan/view_window.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
-PacketBodies::PacketBodies(const SceneSolids& solids, const Camera& camera, const PixelWindow& window, double depth_min)
+PacketBodies::PacketBodies(const SceneSolids& solids, const scene::Camera& camera, const scene::PixelWindow& window,
+                           double depth_min)
     : window_(window),
       packets_in_row_(static_cast<std::size_t>((window.width + kLanes - 1) / kLanes)),
       packets_(packets_in_row_ * static_cast<std::size_t>(window.height)) {
   std::uint32_t solid = 0;
   const auto add_solid = [&](const auto& outline) {
-    const PixelWindow& rows = outline.window();
+    const scene::PixelWindow& rows = outline.window();
     for (int row = rows.y; row < rows.y + rows.height; ++row) {
       const Columns columns = outline.columns(row);
       for_each_packet(row, columns.begin, columns.end, [&](BodiesInReach& bodies) {
@@ -27,7 +28,8 @@ PacketBodies::PacketBodies(const SceneSolids& solids, const Camera& camera, cons
   for (const auto& cylinder : solids.cylinders) add_solid(CylinderOutline(cylinder.solid, camera, depth_min));
   for (const auto& sphere : solids.spheres) add_solid(SphereOutline(sphere.solid, camera, depth_min));
   for (std::size_t box = 0; box < solids.bin.size(); ++box) {
-    const PixelWindow seen = view_window({{}, {}, {solids.bin[box]}}, SeenBodies::bin_and_tubes, camera, depth_min);
+    const scene::PixelWindow seen =
+        view_window({{}, {}, {solids.bin[box]}}, SeenBodies::bin_and_tubes, camera, depth_min);
     for (int row = seen.y; row < seen.y + seen.height; ++row)
       for_each_packet(row, seen.x, seen.x + seen.width, [&](BodiesInReach& bodies) { bodies.boxes |= box_flag(box); });
   }
@@ -46,4 +48,4 @@ void PacketBodies::for_each_packet(int row, int begin, int end, const Add& add) 
   for (std::size_t i = index(begin, row); i <= index(end - 1, row); ++i) add(packets_[i]);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

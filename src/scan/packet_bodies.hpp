@@ -8,7 +8,7 @@
 #include "scan/scene_solids.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 /// A bit for each of the bin's boxes.
 using BoxFlags = std::uint32_t;
@@ -29,7 +29,8 @@ struct BodiesInReach {
 class PacketBodies {
  public:
   /// Bodies that are seen at depth_min (metres) or beyond count. At most 32 boxes.
-  PacketBodies(const SceneSolids& solids, const Camera& camera, const PixelWindow& window, double depth_min);
+  PacketBodies(const SceneSolids& solids, const scene::Camera& camera, const scene::PixelWindow& window,
+               double depth_min);
 
   /// Of the packet that begins at a pixel of the window. Its rays meet no others.
   const BodiesInReach& at(int column, int row) const { return packets_[index(column, row)]; }
@@ -39,9 +40,9 @@ class PacketBodies {
   template <typename Add>
   void for_each_packet(int row, int begin, int end, const Add& add);
 
-  PixelWindow window_;
+  scene::PixelWindow window_;
   std::size_t packets_in_row_;
   std::vector<BodiesInReach> packets_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

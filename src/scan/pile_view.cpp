@@ -9,21 +9,21 @@
 #include "scan/solid_outline.hpp"
 #include "tubebin/scan/visibility.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 /// A run of pixels in which a solid appears, by its place among its tube's.
 struct Run {
   int row = 0;
   Columns columns;
-  Label label = 0;
+  cloud::Label label = 0;
   std::uint32_t solid = 0;  ///< cylinders first, then spheres
 };
 
 template <typename Solid>
 class RunFinder {
  public:
-  RunFinder(const Solid& solid, const Camera& camera) : solid_(solid), camera_(camera) {}
+  RunFinder(const Solid& solid, const scene::Camera& camera) : solid_(solid), camera_(camera) {}
 
   /// The pixels of the row within `bounds` in which the solid appears; rows ascend. A row's ends are looked for from where
   /// those of the rows before lead.
@@ -65,13 +65,13 @@ class RunFinder {
   bool is_hit(int column) const { return !solid_.intersect(camera_.pixel_direction_in_world(column, row_)).empty(); }
 
   const Solid& solid_;
-  const Camera& camera_;
+  const scene::Camera& camera_;
   int row_ = 0;
   Columns guess_, last_;
 };
 
 template <typename Outline, typename Solid>
-void add_runs(const Labelled<Solid>& labelled, std::uint32_t index, const Camera& camera, double depth_min,
+void add_runs(const Labelled<Solid>& labelled, std::uint32_t index, const scene::Camera& camera, double depth_min,
               std::vector<Run>& runs) {
   const Outline outline(labelled.solid, camera, depth_min);
   RunFinder<Solid> finder(labelled.solid, camera);
@@ -84,7 +84,7 @@ void add_runs(const Labelled<Solid>& labelled, std::uint32_t index, const Camera
 }
 
 /// The runs of all tubes' solids by rows, those of a row by labels.
-std::vector<Run> find_runs(const std::vector<SceneSolids>& tubes, const Camera& camera, double depth_min) {
+std::vector<Run> find_runs(const std::vector<SceneSolids>& tubes, const scene::Camera& camera, double depth_min) {
   std::vector<Run> runs;
   for (const SceneSolids& tube : tubes) {
     std::uint32_t index = 0;
@@ -104,7 +104,7 @@ std::vector<Run> find_runs(const std::vector<SceneSolids>& tubes, const Camera& 
 /// solid's axis; it enters through the flat cap of a free end only if that faces the scanner.
 class DeepestSurface {
  public:
-  explicit DeepestSurface(const Camera& camera)
+  explicit DeepestSurface(const scene::Camera& camera)
       : axis_(camera.world_from_scanner().linear().col(2)),
         sine_(std::sin(std::acos(1.0 / camera.direction_in_world(0.0, 0.0).norm()))) {}
 
@@ -134,7 +134,7 @@ class DeepestSurface {
 /// Counts one row of the image after the other.
 class RowCounter {
  public:
-  RowCounter(const Scene& scene, const std::vector<SceneSolids>& tubes, const Camera& camera)
+  RowCounter(const scene::Scene& scene, const std::vector<SceneSolids>& tubes, const scene::Camera& camera)
       : tubes_(tubes), camera_(camera), occlusions_(scene, camera), columns_(static_cast<std::size_t>(camera.width())) {
     view_.amodal_pixels.assign(tubes.size(), 0);
     const DeepestSurface deepest(camera);
@@ -164,7 +164,7 @@ class RowCounter {
 
   /// What is known of a column in the current row.
   struct Column {
-    Label last = 0;               ///< tube that was marked last
+    cloud::Label last = 0;        ///< tube that was marked last
     std::uint32_t tubes = 0;      ///< that appear here
     bool may_be_behind = false;   ///< a part of the bin may stand before a tube
     std::int32_t top = kNoLayer;  ///< in layers_, of the tube that was measured last
@@ -188,7 +188,7 @@ class RowCounter {
     }
     const double deepest = deepest_[run.label - 1][run.solid];
     for (const BinFront::Part& part : occlusions_.bin().parts()) {
-      const PixelWindow& window = part.window;
+      const scene::PixelWindow& window = part.window;
       if (part.nearest_depth > deepest || run.row < window.y || run.row >= window.y + window.height) continue;
       for (int i = std::max(run.columns.begin, window.x); i < std::min(run.columns.end, window.x + window.width); ++i)
         at(i).may_be_behind = true;
@@ -228,7 +228,7 @@ class RowCounter {
   }
 
   const std::vector<SceneSolids>& tubes_;
-  const Camera& camera_;
+  const scene::Camera& camera_;
   OcclusionCounter occlusions_;
   std::vector<std::vector<double>> deepest_;  // of each tube's solids
   std::vector<Column> columns_;
@@ -238,14 +238,14 @@ class RowCounter {
 };
 
 /// Whether each tube's first surface along a ray is where that enters the first of the tube's solids, within range.
-bool is_plain(const std::vector<SceneSolids>& tubes, const Camera& camera, const Scanner& scanner) {
+bool is_plain(const std::vector<SceneSolids>& tubes, const scene::Camera& camera, const scene::Scanner& scanner) {
   return std::ranges::all_of(tubes, [&](const SceneSolids& tube) {
     return !is_hollow(tube) && !begins_before(tube, camera, scanner.range_min) &&
            !ends_beyond(tube, camera, scanner.range_max);
   });
 }
 
-PileView count_pixels(const Scene& scene) {
+PileView count_pixels(const scene::Scene& scene) {
   const auto views = view_tubes_alone(scene);
   PileView pile;
   for (const auto& view : views) pile.amodal_pixels.push_back(view.size());
@@ -253,8 +253,8 @@ PileView count_pixels(const Scene& scene) {
   return pile;
 }
 
-PileView view_from_one(const Scene& scene) {
-  const Camera camera(scene.scanner);
+PileView view_from_one(const scene::Scene& scene) {
+  const scene::Camera camera(scene.scanner);
   const std::vector<SceneSolids> tubes = solids_by_tube(scene, scene_solids(scene));
   if (!is_plain(tubes, camera, scene.scanner)) return count_pixels(scene);
   const std::vector<Run> runs = find_runs(tubes, camera, scene.scanner.range_min);
@@ -268,7 +268,7 @@ PileView view_from_one(const Scene& scene) {
 
 void add(const PileView& view, PileView& sum) {
   for (std::size_t k = 0; k < view.amodal_pixels.size(); ++k) sum.amodal_pixels[k] += view.amodal_pixels[k];
-  for (const Occlusion& occlusion : view.occlusions) {
+  for (const scene::Occlusion& occlusion : view.occlusions) {
     const auto place = std::ranges::lower_bound(sum.occlusions, occlusion, [](const auto& a, const auto& b) {
       return std::tie(a.behind, a.front) < std::tie(b.behind, b.front);
     });
@@ -280,7 +280,7 @@ void add(const PileView& view, PileView& sum) {
 
 }  // namespace
 
-PileView view_pile(const Scene& scene) {
+PileView view_pile(const scene::Scene& scene) {
   if (scene.further_scanners.empty()) return view_from_one(scene);
   PileView sum = view_from_one(seen_from(scene, 0));
   for (std::size_t source = 1; source < scene.source_count(); ++source)
@@ -288,4 +288,4 @@ PileView view_pile(const Scene& scene) {
   return sum;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

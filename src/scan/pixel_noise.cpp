@@ -4,7 +4,7 @@
 
 #include "tubebin/core/random.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 /// Beyond this many standard deviations a Gaussian filter has nothing left that matters.
@@ -57,7 +57,8 @@ double PixelNoise::normal(int column, int row) const {
   return radius * std::cos(2.0 * std::numbers::pi * uniform(column, row, 1));
 }
 
-std::vector<double> correlated_normals(const PixelNoise& noise, const PixelWindow& window, double correlation_length) {
+std::vector<double> correlated_normals(const PixelNoise& noise, const scene::PixelWindow& window,
+                                       double correlation_length) {
   const std::vector<double> filter = gaussian_filter(correlation_length / 2.0);
   const int reach = static_cast<int>(filter.size()) / 2;
   std::vector<double> white;
@@ -75,4 +76,4 @@ std::vector<double> correlated_normals(const PixelNoise& noise, const PixelWindo
   return row_by_row;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -7,7 +7,7 @@
 
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 /// Every effect draws from a stream of its own.
 enum class NoiseStream : std::uint64_t {
@@ -40,6 +40,7 @@ class PixelNoise {
 /// One normal of mean 0 and standard deviation 1 for each pixel of the window, row by row. The correlation of pixels at a
 /// distance of d pixels is exp(-(d / correlation_length)^2): white noise under a Gaussian filter of standard deviation
 /// correlation_length / 2.
-std::vector<double> correlated_normals(const PixelNoise& noise, const PixelWindow& window, double correlation_length);
+std::vector<double> correlated_normals(const PixelNoise& noise, const scene::PixelWindow& window,
+                                       double correlation_length);
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

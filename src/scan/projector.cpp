@@ -2,30 +2,30 @@
 
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 /// Metres. A point that is computed to lie on a surface is off by far less.
 constexpr double kSurfaceTolerance = 1e-6;
 
-Vec3 projector_in_world(const Scanner& scanner) {
+Vec3 projector_in_world(const scene::Scanner& scanner) {
   return scanner.world_from_scanner() * scanner.effects.projector.position;
 }
 
-SceneSolids solids_around(Scene scene, const Vec3& origin_in_world) {
+SceneSolids solids_around(scene::Scene scene, const Vec3& origin_in_world) {
   scene.scanner.position = origin_in_world;
   return scene_solids(scene);
 }
 
 /// The smallest rotation that turns the scanner's axes so that z points at the focus.
-Eigen::Matrix3d scanner_from_projector(const ProjectorOptions& projector) {
+Eigen::Matrix3d scanner_from_projector(const scene::ProjectorOptions& projector) {
   const Vec3 to_focus = Vec3(0.0, 0.0, projector.focus_distance) - projector.position;
   return Quat::FromTwoVectors(Vec3::UnitZ(), to_focus).toRotationMatrix();
 }
 
 }  // namespace
 
-Projector::Projector(const Scene& scene)
+Projector::Projector(const scene::Scene& scene)
     : position_in_world_(projector_in_world(scene.scanner)),
       projector_from_world_(
           (scene.scanner.world_from_scanner().linear() * scanner_from_projector(scene.scanner.effects.projector))
@@ -45,4 +45,4 @@ bool Projector::reaches(const Vec3& p_in_world) const {
   return caster_.first_hit(ray / distance).depth >= distance - kSurfaceTolerance;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

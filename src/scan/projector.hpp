@@ -3,12 +3,12 @@
 
 #include "scan/ray_caster.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 class Projector {
  public:
   /// The scene's scanner has one.
-  explicit Projector(const Scene& scene);
+  explicit Projector(const scene::Scene& scene);
 
   const Vec3& position_in_world() const { return position_in_world_; }
   /// Whether the point, on a surface, lies in the field and nothing stands before it.
@@ -22,4 +22,4 @@ class Projector {
   RayCaster caster_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -7,7 +7,7 @@
 #include <map>
 #include <stdexcept>
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 /// Embree walks its tree in single precision with rays from the origin: a direction and a bound are each off
@@ -213,7 +213,7 @@ Hit RayCaster::first_boundary_hit(const Vec3& direction) const {
     std::vector<Interval> parts;
     std::vector<Interval> bores;
   };
-  std::map<Label, Body> bodies;
+  std::map<cloud::Label, Body> bodies;
   const auto add = [](const Interval& inside, std::vector<Interval>& to) {
     if (!inside.empty()) to.push_back(inside);
   };
@@ -227,7 +227,7 @@ Hit RayCaster::first_boundary_hit(const Vec3& direction) const {
     }
   };
   const Vec3 inverse = inverse_direction(direction);
-  for (const Box& box : solids_.bin) add(intersect(box, inverse), bodies[0].parts);
+  for (const scene::Box& box : solids_.bin) add(intersect(box, inverse), bodies[0].parts);
   add_solids(solids_.cylinders);
   add_solids(solids_.spheres);
   Hit first;
@@ -238,4 +238,4 @@ Hit RayCaster::first_boundary_hit(const Vec3& direction) const {
   return first;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

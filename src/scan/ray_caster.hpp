@@ -8,7 +8,7 @@
 #include "scan/ray_packet.hpp"
 #include "scan/scene_solids.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 /// Metres. A floor at exactly range_max is within range whatever the rounding of a ray's direction.
 constexpr double kDepthTolerance = 1e-9;
@@ -53,4 +53,4 @@ class RayCaster {
   embree::Scene scene_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

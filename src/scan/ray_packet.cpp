@@ -2,7 +2,7 @@
 
 #include "tubebin/core/wide.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 RayPacket::RayPacket(std::span<const Vec3> directions, double depth_min) : depth_min_(depth_min) {
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -14,12 +14,12 @@ RayPacket::RayPacket(std::span<const Vec3> directions, double depth_min) : depth
   }
 }
 
-RayPacket::RayPacket(const Camera& camera, int column, int row, double depth_min) : depth_min_(depth_min) {
+RayPacket::RayPacket(const scene::Camera& camera, int column, int row, double depth_min) : depth_min_(depth_min) {
   aim(camera, column, row);
 }
 
 /// As Camera::direction_in_world.
-TUBEBIN_WIDE void RayPacket::aim(const Camera& camera, int column, int row) {
+TUBEBIN_WIDE void RayPacket::aim(const scene::Camera& camera, int column, int row) {
   const Eigen::Matrix3d axes = camera.world_from_scanner().linear();
   const double y = (row + 0.5 - camera.height() / 2.0) / camera.focal_length();
   Lanes x;
@@ -38,7 +38,7 @@ Vec3 RayPacket::direction(int lane) const {
   return {directions.x[lane % kBlockLanes], directions.y[lane % kBlockLanes], directions.z[lane % kBlockLanes]};
 }
 
-[[gnu::always_inline]] inline void RayPacket::Block::take(const IntervalOf<Lanes>& inside, Label label_inside,
+[[gnu::always_inline]] inline void RayPacket::Block::take(const IntervalOf<Lanes>& inside, cloud::Label label_inside,
                                                           double depth_min) {
   const LaneFlags met = (inside.begin <= inside.end) & (inside.end >= depth_min);
   begins_inside |= met & (inside.begin < depth_min);
@@ -81,8 +81,8 @@ TUBEBIN_WIDE void RayPacket::forget_beyond(double depth_max) {
   }
 }
 
-TUBEBIN_WIDE void RayPacket::get_first_points(const Vec3& origin, std::span<Point> points,
-                                              std::span<Label> labels) const {
+TUBEBIN_WIDE void RayPacket::get_first_points(const Vec3& origin, std::span<cloud::Point> points,
+                                              std::span<cloud::Label> labels) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t begin = 0; begin < points.size(); begin += kBlockLanes) {
@@ -96,7 +96,7 @@ TUBEBIN_WIDE void RayPacket::get_first_points(const Vec3& origin, std::span<Poin
     const std::size_t count = std::min<std::size_t>(kBlockLanes, points.size() - begin);
     for (std::size_t lane = 0; lane < count; ++lane) {
       points[begin + lane] = {static_cast<float>(x[lane]), static_cast<float>(y[lane]), static_cast<float>(z[lane])};
-      labels[begin + lane] = static_cast<Label>(label[lane]);
+      labels[begin + lane] = static_cast<cloud::Label>(label[lane]);
     }
   }
 }
@@ -109,7 +109,7 @@ bool RayPacket::has_special() const {
   return any;
 }
 
-TUBEBIN_WIDE void RayPacket::offer_bin(const std::vector<Box>& bin, BoxFlags boxes) {
+TUBEBIN_WIDE void RayPacket::offer_bin(const std::vector<scene::Box>& bin, BoxFlags boxes) {
   for (Block& block : blocks_) {
     DirectionOf<Lanes> inverse;
     invert(block.directions, inverse);
@@ -139,4 +139,4 @@ void RayPacket::check_bore(const Labelled<Solid>& solid) {
   }
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

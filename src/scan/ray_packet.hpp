@@ -11,7 +11,7 @@
 #include "scan/scene_solids.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 /// The rays of a packet, which are as many as of Embree's, are reckoned in blocks that fill a register of AVX2 each:
 /// GCC takes vectors that are longer than a register apart, one number at a time.
@@ -22,7 +22,7 @@ using LaneFlags = std::int64_t __attribute__((vector_size(kBlockLanes * sizeof(d
 
 struct Hit {
   double depth = std::numeric_limits<double>::infinity();  ///< along the optical axis, metres; infinity: nothing
-  Label label = 0;
+  cloud::Label label = 0;
 
   bool found() const { return depth < std::numeric_limits<double>::infinity(); }
 };
@@ -35,11 +35,11 @@ class RayPacket {
   /// At most kLanes directions; the last fills the lanes that are left. Depths below depth_min don't count.
   RayPacket(std::span<const Vec3> directions, double depth_min);
   /// Through the pixel and those to its right.
-  RayPacket(const Camera& camera, int column, int row, double depth_min);
+  RayPacket(const scene::Camera& camera, int column, int row, double depth_min);
 
   /// Each lane takes the solid's first point if it is nearer than what it has. Equal depths go to the lower label, so
   /// that the result does not depend on the order of the solids.
-  void offer_bin(const std::vector<Box>& bin, BoxFlags boxes = kAllBoxes);
+  void offer_bin(const std::vector<scene::Box>& bin, BoxFlags boxes = kAllBoxes);
   void offer(const Labelled<SolidCylinder>& cylinder);
   void offer(const Labelled<SolidSphere>& sphere);
 
@@ -51,9 +51,9 @@ class RayPacket {
 
   Vec3 direction(int lane) const;
   /// Of the first lanes: origin + depth * direction and the label; no number and 0 where nothing is met.
-  void get_first_points(const Vec3& origin, std::span<Point> points, std::span<Label> labels) const;
+  void get_first_points(const Vec3& origin, std::span<cloud::Point> points, std::span<cloud::Label> labels) const;
   double depth(int lane) const { return block(lane).depth[lane % kBlockLanes]; }
-  Hit first(int lane) const { return {depth(lane), static_cast<Label>(block(lane).label[lane % kBlockLanes])}; }
+  Hit first(int lane) const { return {depth(lane), static_cast<cloud::Label>(block(lane).label[lane % kBlockLanes])}; }
   /// Whether the first boundary is to be looked for otherwise: the ray begins inside a solid, or enters a hollow tube
   /// through its open end.
   bool is_special(int lane) const {
@@ -70,11 +70,11 @@ class RayPacket {
     LaneFlags begins_inside = {};
     LaneFlags enters_bore = {};  ///< at `depth`
 
-    void take(const IntervalOf<Lanes>& inside, Label label_inside, double depth_min);
+    void take(const IntervalOf<Lanes>& inside, cloud::Label label_inside, double depth_min);
   };
 
   const Block& block(int lane) const { return blocks_[static_cast<std::size_t>(lane / kBlockLanes)]; }
-  void aim(const Camera& camera, int column, int row);
+  void aim(const scene::Camera& camera, int column, int row);
   template <typename Solid>
   void offer_solid(const Labelled<Solid>& solid);
   template <typename Solid>
@@ -84,4 +84,4 @@ class RayPacket {
   double depth_min_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

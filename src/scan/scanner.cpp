@@ -14,19 +14,20 @@
 #include "tubebin/cloud/label_colors.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
-const Point kNoPoint = Point::Constant(std::numeric_limits<float>::quiet_NaN());
+const cloud::Point kNoPoint = cloud::Point::Constant(std::numeric_limits<float>::quiet_NaN());
 
-PixelWindow whole_image(const Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
+scene::PixelWindow whole_image(const scene::Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
 
 /// Fills the points and labels of the pixels from (column, row) on to the right: no number and 0 where a pixel has no
 /// point.
-using PointsOfRow = std::function<void(int column, int row, std::span<Point> points, std::span<Label> labels)>;
+using PointsOfRow =
+    std::function<void(int column, int row, std::span<cloud::Point> points, std::span<cloud::Label> labels)>;
 
-PointsOfRow exact_points(const RayCaster& caster, const Camera& camera, const PacketBodies& bodies) {
-  return [&](int column, int row, std::span<Point> points, std::span<Label> labels) {
+PointsOfRow exact_points(const RayCaster& caster, const scene::Camera& camera, const PacketBodies& bodies) {
+  return [&](int column, int row, std::span<cloud::Point> points, std::span<cloud::Label> labels) {
     const Vec3 scanner_in_world = camera.world_from_scanner().translation();
     for (std::size_t begin = 0; begin < points.size(); begin += kLanes) {
       const std::size_t count = std::min<std::size_t>(kLanes, points.size() - begin);
@@ -39,44 +40,44 @@ PointsOfRow exact_points(const RayCaster& caster, const Camera& camera, const Pa
 }
 
 PointsOfRow measured_points(const Measurement& measurement, const Reconstruction& reconstruction) {
-  return [&](int column, int row, std::span<Point> points, std::span<Label> labels) {
+  return [&](int column, int row, std::span<cloud::Point> points, std::span<cloud::Label> labels) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const int at = column + static_cast<int>(i);
       const std::optional<Hit> hit = measurement.measure(at, row);
-      points[i] = hit ? Point(reconstruction.point_in_world(at, row, hit->depth).cast<float>()) : kNoPoint;
+      points[i] = hit ? cloud::Point(reconstruction.point_in_world(at, row, hit->depth).cast<float>()) : kNoPoint;
       labels[i] = hit ? hit->label : 0;
     }
   };
 }
 
-void resize_empty(Cloud& cloud, const PixelWindow& window) {
+void resize_empty(cloud::Cloud& cloud, const scene::PixelWindow& window) {
   const auto pixels = static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
   cloud.width = static_cast<std::uint32_t>(window.width);
   cloud.height = static_cast<std::uint32_t>(window.height);
   cloud.points.assign(pixels, kNoPoint);
-  cloud.colors.assign(pixels, kNullColor);
+  cloud.colors.assign(pixels, cloud::kNullColor);
   cloud.labels.assign(pixels, 0);
 }
 
 /// Neighbours mostly have the same label.
-void count_pixels(std::span<const Label> labels, std::vector<std::size_t>& tube_pixels) {
+void count_pixels(std::span<const cloud::Label> labels, std::vector<std::size_t>& tube_pixels) {
   for (auto run = labels.begin(); run != labels.end();) {
-    const auto end = std::find_if(run, labels.end(), [run](Label label) { return label != *run; });
+    const auto end = std::find_if(run, labels.end(), [run](cloud::Label label) { return label != *run; });
     if (*run > 0) tube_pixels[*run - 1] += static_cast<std::size_t>(end - run);
     run = end;
   }
 }
 
 /// One point a pixel of `scan.window`; what lies outside `seen` shows neither bin nor tubes.
-void scan_organized(const PointsOfRow& points_of_row, const PixelWindow& seen, const std::vector<Color>& colors,
-                    Scan& scan) {
+void scan_organized(const PointsOfRow& points_of_row, const scene::PixelWindow& seen,
+                    const std::vector<cloud::Color>& colors, Scan& scan) {
   resize_empty(scan.cloud, scan.window);
   const auto width = static_cast<std::size_t>(seen.width);
   for (int row = seen.y; row < seen.y + seen.height; ++row) {
     const auto begin = static_cast<std::size_t>(row - scan.window.y) * scan.cloud.width +
                        static_cast<std::size_t>(seen.x - scan.window.x);
-    const std::span<Point> points = std::span(scan.cloud.points).subspan(begin, width);
-    const std::span<Label> labels = std::span(scan.cloud.labels).subspan(begin, width);
+    const std::span<cloud::Point> points = std::span(scan.cloud.points).subspan(begin, width);
+    const std::span<cloud::Label> labels = std::span(scan.cloud.labels).subspan(begin, width);
     points_of_row(seen.x, row, points, labels);
     count_pixels(labels, scan.tube_pixels);
     for (std::size_t i = 0; i < width; ++i)
@@ -84,9 +85,9 @@ void scan_organized(const PointsOfRow& points_of_row, const PixelWindow& seen, c
   }
 }
 
-void scan_tubes(const PointsOfRow& points_of_row, const std::vector<Color>& colors, Scan& scan) {
-  std::vector<Point> points(static_cast<std::size_t>(scan.window.width));
-  std::vector<Label> labels(points.size());
+void scan_tubes(const PointsOfRow& points_of_row, const std::vector<cloud::Color>& colors, Scan& scan) {
+  std::vector<cloud::Point> points(static_cast<std::size_t>(scan.window.width));
+  std::vector<cloud::Label> labels(points.size());
   for (int row = scan.window.y; row < scan.window.y + scan.window.height; ++row) {
     points_of_row(scan.window.x, row, points, labels);
     count_pixels(labels, scan.tube_pixels);
@@ -100,25 +101,26 @@ void scan_tubes(const PointsOfRow& points_of_row, const std::vector<Color>& colo
   scan.cloud.width = static_cast<std::uint32_t>(scan.cloud.size());
 }
 
-void scan_region(const PointsOfRow& points_of_row, const PixelWindow& seen, ScanRegion region, Scan& scan) {
-  const std::vector<Color> colors = label_colors(scan.tube_pixels.size());
-  if (region == ScanRegion::tubes) scan_tubes(points_of_row, colors, scan);
+void scan_region(const PointsOfRow& points_of_row, const scene::PixelWindow& seen, scene::ScanRegion region,
+                 Scan& scan) {
+  const std::vector<cloud::Color> colors = cloud::label_colors(scan.tube_pixels.size());
+  if (region == scene::ScanRegion::tubes) scan_tubes(points_of_row, colors, scan);
   else scan_organized(points_of_row, seen, colors, scan);
 }
 
 }  // namespace
 
-Scan scan(const Scene& scene, std::uint64_t seed) {
-  const Scanner& scanner = scene.scanner;
-  const Camera camera(scanner);
+Scan scan(const scene::Scene& scene, std::uint64_t seed) {
+  const scene::Scanner& scanner = scene.scanner;
+  const scene::Camera camera(scanner);
   SceneSolids solids = scene_solids(scene);
-  const bool tubes_alone = scanner.region == ScanRegion::tubes;
-  const PixelWindow seen =
+  const bool tubes_alone = scanner.region == scene::ScanRegion::tubes;
+  const scene::PixelWindow seen =
       view_window(solids, tubes_alone ? SeenBodies::tubes : SeenBodies::bin_and_tubes, camera, scanner.range_min);
   const RayCaster caster(std::move(solids), scanner.range_min, scanner.range_max);
 
   Scan scan;
-  scan.window = scanner.region == ScanRegion::full ? whole_image(camera) : seen;
+  scan.window = scanner.region == scene::ScanRegion::full ? whole_image(camera) : seen;
   scan.tube_pixels.assign(scene.tubes.size(), 0);
   scan.cloud.world_from_sensor = camera.world_from_scanner();
   if (scanner.effects.any()) {
@@ -132,11 +134,11 @@ Scan scan(const Scene& scene, std::uint64_t seed) {
   return scan;
 }
 
-Scan scan_exactly(Scene scene) {
+Scan scan_exactly(scene::Scene scene) {
   scene.scanner.effects = {};
   return scan(scene);
 }
 
 const char* embree_version() { return RTC_VERSION_STRING; }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

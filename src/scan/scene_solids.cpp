@@ -1,15 +1,15 @@
 #include "scan/scene_solids.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
-void add_tube(const PlacedTube& placed, Label label, const Vec3& scanner_in_world, SceneSolids& solids) {
-  const Tube& tube = placed.tube;
+void add_tube(const scene::PlacedTube& placed, cloud::Label label, const Vec3& scanner_in_world, SceneSolids& solids) {
+  const tube::Tube& tube = placed.tube;
   const auto bore_radius = [&](double radius) {
     return tube.wall_thickness > 0.0 ? radius - tube.wall_thickness : 0.0;
   };
   const auto node_seen = [&](int node) -> Vec3 { return placed.node_in_world(node) - scanner_in_world; };
-  for (const Cylinder& cylinder : tube.cylinders) {
+  for (const tube::Cylinder& cylinder : tube.cylinders) {
     const Vec3 base = node_seen(cylinder.node_a);
     const Vec3 top = node_seen(cylinder.node_b);
     const double radius = tube.radius_of(cylinder);
@@ -24,13 +24,13 @@ void add_tube(const PlacedTube& placed, Label label, const Vec3& scanner_in_worl
 
 }  // namespace
 
-SceneSolids scene_solids(const Scene& scene) {
+SceneSolids scene_solids(const scene::Scene& scene) {
   SceneSolids solids;
-  Label label = 0;
-  for (const PlacedTube& tube : scene.tubes) add_tube(tube, ++label, scene.scanner.position, solids);
-  solids.bin = bin_boxes(scene.bin);
-  for (Box& box : solids.bin) box.translate(-scene.scanner.position);
+  cloud::Label label = 0;
+  for (const scene::PlacedTube& tube : scene.tubes) add_tube(tube, ++label, scene.scanner.position, solids);
+  solids.bin = scene::bin_boxes(scene.bin);
+  for (scene::Box& box : solids.bin) box.translate(-scene.scanner.position);
   return solids;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -7,12 +7,12 @@
 #include "tubebin/cloud/cloud.hpp"
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 template <typename Solid>
 struct Labelled {
   Solid solid;
-  Label label = 0;
+  cloud::Label label = 0;
   double bore_radius = 0.0;  ///< metres; 0: the solid has no bore
 };
 
@@ -20,9 +20,9 @@ struct Labelled {
 struct SceneSolids {
   std::vector<Labelled<SolidCylinder>> cylinders;
   std::vector<Labelled<SolidSphere>> spheres;  ///< where two or more cylinders meet, and nodes alone
-  std::vector<Box> bin;
+  std::vector<scene::Box> bin;
 };
 
-SceneSolids scene_solids(const Scene& scene);
+SceneSolids scene_solids(const scene::Scene& scene);
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

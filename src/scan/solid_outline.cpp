@@ -5,7 +5,7 @@
 
 #include "scan/view_window.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 /// Keeps the t of [from, to] with value + t * slope <= 0.
@@ -15,26 +15,26 @@ void limit(double value, double slope, double& from, double& to) {
   else if (value > 0.0) to = -1.0;
 }
 
-PixelWindow window_of(const SolidSphere& sphere, const Camera& camera, double depth_min) {
+scene::PixelWindow window_of(const SolidSphere& sphere, const scene::Camera& camera, double depth_min) {
   return view_window({{}, {{sphere, 0}}, {}}, SeenBodies::tubes, camera, depth_min);
 }
 
 }  // namespace
 
-double nearest_depth(const Box& box, const Camera& camera) {
+double nearest_depth(const scene::Box& box, const scene::Camera& camera) {
   const Vec3 axis = camera.world_from_scanner().linear().col(2);
   return axis.cwiseProduct(box.min()).cwiseMin(axis.cwiseProduct(box.max())).sum();
 }
 
-bool begins_before(const SceneSolids& solids, const Camera& camera, double depth) {
+bool begins_before(const SceneSolids& solids, const scene::Camera& camera, double depth) {
   const auto is_nearer = [&](const auto& labelled) { return nearest_depth(labelled.solid.bounds(), camera) < depth; };
   return std::ranges::any_of(solids.cylinders, is_nearer) || std::ranges::any_of(solids.spheres, is_nearer);
 }
 
-bool ends_beyond(const SceneSolids& solids, const Camera& camera, double depth) {
+bool ends_beyond(const SceneSolids& solids, const scene::Camera& camera, double depth) {
   const Vec3 axis = camera.world_from_scanner().linear().col(2);
   const auto is_farther = [&](const auto& labelled) {
-    const Box box = labelled.solid.bounds();
+    const scene::Box box = labelled.solid.bounds();
     return axis.cwiseProduct(box.min()).cwiseMax(axis.cwiseProduct(box.max())).sum() > depth;
   };
   return std::ranges::any_of(solids.cylinders, is_farther) || std::ranges::any_of(solids.spheres, is_farther);
@@ -44,19 +44,19 @@ bool is_hollow(const SceneSolids& tube) {
   return std::ranges::any_of(tube.cylinders, [](const auto& cylinder) { return cylinder.bore_radius > 0.0; });
 }
 
-std::vector<SceneSolids> solids_by_tube(const Scene& scene, const SceneSolids& all) {
+std::vector<SceneSolids> solids_by_tube(const scene::Scene& scene, const SceneSolids& all) {
   std::vector<SceneSolids> by_tube(scene.tubes.size());
   for (const auto& cylinder : all.cylinders) by_tube[cylinder.label - 1].cylinders.push_back(cylinder);
   for (const auto& sphere : all.spheres) by_tube[sphere.label - 1].spheres.push_back(sphere);
   return by_tube;
 }
 
-CylinderOutline::CylinderOutline(const SolidCylinder& cylinder, const Camera& camera, double depth_min)
+CylinderOutline::CylinderOutline(const SolidCylinder& cylinder, const scene::Camera& camera, double depth_min)
     : whole_(view_window({{{cylinder, 0}}, {}, {}}, SeenBodies::tubes, camera, depth_min)) {
   const auto window_of_ball = [&](const Vec3& center) {
     return window_of(SolidSphere(center, cylinder.radius()), camera, depth_min);
   };
-  const auto is_whole = [&](const PixelWindow& w) {
+  const auto is_whole = [&](const scene::PixelWindow& w) {
     return w.x > 0 && w.y > 0 && w.x + w.width < camera.width() && w.y + w.height < camera.height() && w.width > 0;
   };
   base_ = window_of_ball(cylinder.base());
@@ -81,7 +81,7 @@ Columns CylinderOutline::columns(int row) const {
           std::min(all.end, static_cast<int>(std::ceil(std::max(right(from), right(to)))))};
 }
 
-SphereOutline::SphereOutline(const SolidSphere& sphere, const Camera& camera, double depth_min)
+SphereOutline::SphereOutline(const SolidSphere& sphere, const scene::Camera& camera, double depth_min)
     : window_(window_of(sphere, camera, depth_min)) {}
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

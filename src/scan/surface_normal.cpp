@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 /// Pixels to the rays close by: far above rounding in double precision, and so little that a tube does not bend.
@@ -11,8 +11,8 @@ constexpr double kStep = 1e-3;
 constexpr double kSmooth = 1e-4;
 
 /// From the hit to where a ray close by meets the same surface; the way in depth decides between the two sides.
-Vec3 tangent(const RayCaster& caster, const Camera& camera, const Eigen::Vector2d& at, const Eigen::Vector2d& step,
-             const Hit& hit) {
+Vec3 tangent(const RayCaster& caster, const scene::Camera& camera, const Eigen::Vector2d& at,
+             const Eigen::Vector2d& step, const Hit& hit) {
   const Vec3 from = hit.depth * camera.direction_in_world(at.x(), at.y());
   Vec3 best = Vec3::Zero();
   double least_change = std::numeric_limits<double>::infinity();
@@ -32,7 +32,7 @@ Vec3 tangent(const RayCaster& caster, const Camera& camera, const Eigen::Vector2
 
 }  // namespace
 
-Vec3 surface_normal(const RayCaster& caster, const Camera& camera, double x, double y, const Hit& hit) {
+Vec3 surface_normal(const RayCaster& caster, const scene::Camera& camera, double x, double y, const Hit& hit) {
   const Eigen::Vector2d at(x, y);
   const Vec3 to_camera = -camera.direction_in_world(x, y).normalized();
   const Vec3 normal =
@@ -43,4 +43,4 @@ Vec3 surface_normal(const RayCaster& caster, const Camera& camera, double x, dou
   return normal.dot(to_camera) < 0.0 ? Vec3(-normal / length) : Vec3(normal / length);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -4,10 +4,10 @@
 #include "scan/ray_caster.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 /// The unit normal, towards the camera, world axes, of the surface at depth `hit.depth` along the ray through image
 /// position (x, y): from where two rays close by meet it.
-Vec3 surface_normal(const RayCaster& caster, const Camera& camera, double x, double y, const Hit& hit);
+Vec3 surface_normal(const RayCaster& caster, const scene::Camera& camera, double x, double y, const Hit& hit);
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 /// A plane at depth zero can't be projected; nothing is nearer than this (metres).
@@ -15,14 +15,14 @@ using Corners = std::array<Vec3, 8>;
 /// Grows over what is projected into the image.
 class ViewBounds {
  public:
-  ViewBounds(const Camera& camera, double depth_min)
+  ViewBounds(const scene::Camera& camera, double depth_min)
       : camera_(camera),
         scanner_from_seen_(camera.world_from_scanner().linear().transpose()),
         depth_min_(std::max(depth_min, kNearestDepth)) {}
 
-  void add_box(const Box& box) {
+  void add_box(const scene::Box& box) {
     Corners corners;
-    for (std::size_t i = 0; i < 8; ++i) corners[i] = box.corner(static_cast<Box::CornerType>(i));
+    for (std::size_t i = 0; i < 8; ++i) corners[i] = box.corner(static_cast<scene::Box::CornerType>(i));
     add_hexahedron(corners);
   }
 
@@ -36,19 +36,19 @@ class ViewBounds {
     if (!add_disc(sphere.center(), Vec3::Zero(), sphere.radius())) add_box(sphere.bounds());
   }
 
-  PixelWindow window() const {
+  scene::PixelWindow window() const {
     // Pixel c is in where its centre c + 0.5 is.
     const auto first = [](double low) { return static_cast<int>(std::ceil(low - 0.5 - kRoundingPixels)); };
     const auto last = [](double high) { return static_cast<int>(std::floor(high - 0.5 + kRoundingPixels)); };
     if (bounds_.isEmpty()) return {};
     const Eigen::Vector2d low = bounds_.min().cwiseMax(Eigen::Vector2d::Zero());
     const Eigen::Vector2d high = bounds_.max().cwiseMin(Eigen::Vector2d(camera_.width(), camera_.height()));
-    PixelWindow window;
+    scene::PixelWindow window;
     window.x = std::max(first(low.x()), 0);
     window.y = std::max(first(low.y()), 0);
     window.width = std::min(last(high.x()), camera_.width() - 1) - window.x + 1;
     window.height = std::min(last(high.y()), camera_.height() - 1) - window.y + 1;
-    return window.width > 0 && window.height > 0 ? window : PixelWindow{};
+    return window.width > 0 && window.height > 0 ? window : scene::PixelWindow{};
   }
 
  private:
@@ -110,7 +110,7 @@ class ViewBounds {
     return {(half_b - root) / a, (half_b + root) / a};
   }
 
-  const Camera& camera_;
+  const scene::Camera& camera_;
   Eigen::Matrix3d scanner_from_seen_;
   double depth_min_;
   Eigen::AlignedBox2d bounds_;
@@ -118,13 +118,14 @@ class ViewBounds {
 
 }  // namespace
 
-PixelWindow view_window(const SceneSolids& solids, SeenBodies bodies, const Camera& camera, double depth_min) {
+scene::PixelWindow view_window(const SceneSolids& solids, SeenBodies bodies, const scene::Camera& camera,
+                               double depth_min) {
   ViewBounds bounds(camera, depth_min);
   for (const auto& cylinder : solids.cylinders) bounds.add_cylinder(cylinder.solid);
   for (const auto& sphere : solids.spheres) bounds.add_sphere(sphere.solid);
   if (bodies == SeenBodies::bin_and_tubes)
-    for (const Box& box : solids.bin) bounds.add_box(box);
+    for (const scene::Box& box : solids.bin) bounds.add_box(box);
   return bounds.window();
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -8,7 +8,7 @@
 #include "scan/view_window.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
@@ -16,7 +16,7 @@ constexpr double kNowhere = std::numeric_limits<double>::infinity();
 /// The first surfaces of one tube, pixel by pixel of a window.
 class DepthImage {
  public:
-  explicit DepthImage(const PixelWindow& window)
+  explicit DepthImage(const scene::PixelWindow& window)
       : window_(window),
         depths_(static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height), kNowhere) {}
 
@@ -35,19 +35,19 @@ class DepthImage {
   }
 
  private:
-  PixelWindow window_;
+  scene::PixelWindow window_;
   std::vector<double> depths_;
 };
 
 template <typename OnPixel>
-void for_each_pixel(const PixelWindow& window, const OnPixel& on_pixel) {
+void for_each_pixel(const scene::PixelWindow& window, const OnPixel& on_pixel) {
   for (int row = window.y; row < window.y + window.height; ++row)
     for (int column = window.x; column < window.x + window.width; ++column) on_pixel(column, row);
 }
 
 /// A convex solid's pixels in a row are neighbours.
 template <typename Solid>
-void draw_row(const Solid& solid, const Columns& columns, int row, const Camera& camera, DepthImage& image) {
+void draw_row(const Solid& solid, const Columns& columns, int row, const scene::Camera& camera, DepthImage& image) {
   bool was_hit = false;
   for (int column = columns.begin; column < columns.end; ++column) {
     const Interval inside = solid.intersect(camera.pixel_direction_in_world(column, row));
@@ -62,24 +62,24 @@ void draw_row(const Solid& solid, const Columns& columns, int row, const Camera&
 }
 
 template <typename Outline, typename Solid>
-void draw(const Solid& solid, const Camera& camera, double depth_min, DepthImage& image) {
+void draw(const Solid& solid, const scene::Camera& camera, double depth_min, DepthImage& image) {
   const Outline outline(solid, camera, depth_min);
-  const PixelWindow& window = outline.window();
+  const scene::PixelWindow& window = outline.window();
   for (int row = window.y; row < window.y + window.height; ++row)
     draw_row(solid, outline.columns(row), row, camera, image);
 }
 
 /// Of a tube that lies wholly beyond range_min a ray's first surface is where it enters the first of its solids.
-std::vector<SeenPixel> view_beyond(const SceneSolids& tube, const PixelWindow& window, const Camera& camera,
-                                   const Scanner& scanner) {
+std::vector<SeenPixel> view_beyond(const SceneSolids& tube, const scene::PixelWindow& window,
+                                   const scene::Camera& camera, const scene::Scanner& scanner) {
   DepthImage image(window);
   for (const auto& cylinder : tube.cylinders) draw<CylinderOutline>(cylinder.solid, camera, scanner.range_min, image);
   for (const auto& sphere : tube.spheres) draw<SphereOutline>(sphere.solid, camera, scanner.range_min, image);
   return image.seen_until(scanner.range_max + kDepthTolerance);
 }
 
-std::vector<SeenPixel> view_around(SceneSolids tube, const PixelWindow& window, const Camera& camera,
-                                   const Scanner& scanner) {
+std::vector<SeenPixel> view_around(SceneSolids tube, const scene::PixelWindow& window, const scene::Camera& camera,
+                                   const scene::Scanner& scanner) {
   const RayCaster caster(std::move(tube), scanner.range_min, scanner.range_max);
   std::vector<SeenPixel> seen;
   for_each_pixel(window, [&](int column, int row) {
@@ -89,7 +89,7 @@ std::vector<SeenPixel> view_around(SceneSolids tube, const PixelWindow& window, 
   return seen;
 }
 
-PixelWindow window_around(const std::vector<std::vector<SeenPixel>>& views) {
+scene::PixelWindow window_around(const std::vector<std::vector<SeenPixel>>& views) {
   Eigen::AlignedBox2i bounds;
   for (const auto& view : views)
     for (const SeenPixel& pixel : view) bounds.extend(Eigen::Vector2i(pixel.column, pixel.row));
@@ -109,7 +109,8 @@ class PixelLayers {
     layers_.resize(begins_.back());
     std::vector<std::uint32_t> next(begins_.begin(), begins_.end() - 1);
     for (std::size_t k = 0; k < views.size(); ++k)
-      for (const SeenPixel& pixel : views[k]) layers_[next[index(pixel)]++] = {static_cast<Label>(k + 1), pixel.depth};
+      for (const SeenPixel& pixel : views[k])
+        layers_[next[index(pixel)]++] = {static_cast<cloud::Label>(k + 1), pixel.depth};
   }
 
   template <typename OnPixel>
@@ -126,18 +127,18 @@ class PixelLayers {
            static_cast<std::size_t>(pixel.column - window_.x);
   }
 
-  PixelWindow window_;
+  scene::PixelWindow window_;
   std::vector<std::uint32_t> begins_;
   std::vector<Layer> layers_;
 };
 
 }  // namespace
 
-std::vector<std::vector<SeenPixel>> view_tubes_alone(const Scene& scene) {
-  const Camera camera(scene.scanner);
+std::vector<std::vector<SeenPixel>> view_tubes_alone(const scene::Scene& scene) {
+  const scene::Camera camera(scene.scanner);
   std::vector<std::vector<SeenPixel>> views;
   for (SceneSolids& tube : solids_by_tube(scene, scene_solids(scene))) {
-    const PixelWindow window = view_window(tube, SeenBodies::tubes, camera, scene.scanner.range_min);
+    const scene::PixelWindow window = view_window(tube, SeenBodies::tubes, camera, scene.scanner.range_min);
     views.push_back(is_hollow(tube) || begins_before(tube, camera, scene.scanner.range_min)
                         ? view_around(std::move(tube), window, camera, scene.scanner)
                         : view_beyond(tube, window, camera, scene.scanner));
@@ -145,12 +146,13 @@ std::vector<std::vector<SeenPixel>> view_tubes_alone(const Scene& scene) {
   return views;
 }
 
-std::vector<Occlusion> find_occlusions(const Scene& scene, const std::vector<std::vector<SeenPixel>>& views) {
-  const Camera camera(scene.scanner);
+std::vector<scene::Occlusion> find_occlusions(const scene::Scene& scene,
+                                              const std::vector<std::vector<SeenPixel>>& views) {
+  const scene::Camera camera(scene.scanner);
   OcclusionCounter counter(scene, camera);
   PixelLayers(views).for_each(
       [&](int column, int row, std::span<const Layer> tubes) { counter.count(tubes, column, row); });
   return counter.occlusions();
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

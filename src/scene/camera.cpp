@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::scene {
 
 Camera::Camera(const Scanner& scanner)
     : width_(scanner.width),
@@ -21,4 +21,4 @@ Eigen::Vector2d Camera::project(const Vec3& p_in_scanner) const {
           height_ / 2.0 + focal_length_ * p_in_scanner.y() / p_in_scanner.z()};
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

@@ -8,7 +8,7 @@
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -102,4 +102,4 @@ std::vector<std::string> DatasetFiles::scenes() const try {
   throw_io_error("{}: cannot be searched for clouds: {}", dataset_, error.code().message());
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

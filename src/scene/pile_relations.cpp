@@ -4,7 +4,7 @@
 
 #include "scene/plan_overlap.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 namespace {
 
 /// A tube without its outermost kGrazing, as convex pieces.
@@ -14,12 +14,12 @@ struct Core {
 };
 
 Core core_of(const PlacedTube& placed) {
-  const Tube& tube = placed.tube;
+  const tube::Tube& tube = placed.tube;
   const auto eroded_of = [](double radius) { return std::min(kGrazing, 0.25 * radius); };
   const std::vector<int> degrees = tube.node_degrees();
   const auto is_free = [&](int node) { return degrees[static_cast<std::size_t>(node)] == 1; };
   Core core;
-  for (const Cylinder& cylinder : tube.cylinders) {
+  for (const tube::Cylinder& cylinder : tube.cylinders) {
     const Vec3 a = placed.node_in_world(cylinder.node_a), b = placed.node_in_world(cylinder.node_b);
     const double eroded = eroded_of(tube.radius_of(cylinder)), radius = tube.radius_of(cylinder) - eroded;
     const Vec3 cut = std::min(eroded / (b - a).norm(), 0.25) * (b - a);
@@ -75,7 +75,8 @@ std::vector<std::vector<bool>> transitive_closure(std::size_t tube_count, const 
 /// Walks a tube's cylinders, each once.
 class PathWalker {
  public:
-  explicit PathWalker(const Tube& tube) : tube_(tube), degrees_(tube.node_degrees()), walked_(tube.cylinders.size()) {}
+  explicit PathWalker(const tube::Tube& tube)
+      : tube_(tube), degrees_(tube.node_degrees()), walked_(tube.cylinders.size()) {}
 
   bool is_inner(int node) const { return degrees_[static_cast<std::size_t>(node)] == 2; }
   bool is_alone(int node) const { return degrees_[static_cast<std::size_t>(node)] == 0; }
@@ -95,7 +96,7 @@ class PathWalker {
  private:
   int step_from(int node) {
     for (std::size_t i = 0; i < walked_.size(); ++i) {
-      const Cylinder& cylinder = tube_.cylinders[i];
+      const tube::Cylinder& cylinder = tube_.cylinders[i];
       if (walked_[i] || (cylinder.node_a != node && cylinder.node_b != node)) continue;
       walked_[i] = true;
       return cylinder.node_a == node ? cylinder.node_b : cylinder.node_a;
@@ -103,7 +104,7 @@ class PathWalker {
     return -1;
   }
 
-  const Tube& tube_;
+  const tube::Tube& tube_;
   std::vector<int> degrees_;
   std::vector<bool> walked_;
 };
@@ -145,7 +146,7 @@ std::vector<LabelGroup> entangled_groups(std::size_t tube_count, const std::vect
   return groups;
 }
 
-std::vector<std::vector<int>> centerline_paths(const Tube& tube) {
+std::vector<std::vector<int>> centerline_paths(const tube::Tube& tube) {
   PathWalker walker(tube);
   std::vector<std::vector<int>> paths;
   const auto walk_all_from = [&](int node) {
@@ -161,4 +162,4 @@ std::vector<std::vector<int>> centerline_paths(const Tube& tube) {
   return paths;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::scene {
 namespace {
 
 using Vec2 = Eigen::Vector2d;
@@ -86,4 +86,4 @@ std::optional<double> height_above(const ConvexPiece& first, const ConvexPiece& 
   return std::nullopt;  // they touch to within rounding
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

@@ -5,7 +5,7 @@
 
 #include "tubebin/core/geometry.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 
 /// The points within a radius of a segment, cut flat across it at either end on request. World frame, metres.
 class ConvexPiece {
@@ -32,4 +32,4 @@ class ConvexPiece {
 /// line does. Of two solids that do not intersect the sign is the same for all lines.
 std::optional<double> height_above(const ConvexPiece& first, const ConvexPiece& second);
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

@@ -1,6 +1,6 @@
 #include "tubebin/scene/scanner_effects.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 namespace {
 
 constexpr Limits kShare = {0.0, 1.0};
@@ -101,4 +101,4 @@ void check(const ScannerEffects& effects, const KeyPlaces& places, const std::st
                             effects.projector.position.z()));
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

@@ -1,6 +1,6 @@
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 
 std::vector<Box> bin_boxes(const Bin& bin) {
   const double x = bin.length / 2.0;
@@ -61,4 +61,4 @@ void check(const Scanner& scanner, const KeyPlaces& places, const std::string& p
   check(scanner.effects, places, prefix + ".effects");
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

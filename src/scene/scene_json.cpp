@@ -3,12 +3,13 @@
 #include <limits>
 #include <stdexcept>
 
-#include "scene/json_reader.hpp"
-#include "scene/json_writer.hpp"
+#include "core/json_reader.hpp"
+#include "core/json_writer.hpp"
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/version.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 namespace {
 
 constexpr const char* kFormat = "tubebin scene";
@@ -21,9 +22,9 @@ constexpr double kPixelTolerance = 1e-6;
 
 // ---- writing
 
-OrderedJson color_to_json(Color color) { return {color >> 16 & 0xFF, color >> 8 & 0xFF, color & 0xFF}; }
+OrderedJson color_to_json(cloud::Color color) { return {color >> 16 & 0xFF, color >> 8 & 0xFF, color & 0xFF}; }
 
-OrderedJson bin_to_json(Bin bin, Color color) {
+OrderedJson bin_to_json(Bin bin, cloud::Color color) {
   OrderedJson json = {{"label", 0}, {"color", color_to_json(color)}};
   json.update(fields_to_json([&](Fields& fields) { describe(fields, bin); }));
   return json;
@@ -60,14 +61,14 @@ OrderedJson centerline_to_json(const PlacedTube& placed) {
   return paths;
 }
 
-OrderedJson tube_to_json(const PlacedTube& placed, std::size_t label, Color color, std::size_t visible_pixels) {
-  const Tube& tube = placed.tube;
+OrderedJson tube_to_json(const PlacedTube& placed, std::size_t label, cloud::Color color, std::size_t visible_pixels) {
+  const tube::Tube& tube = placed.tube;
   OrderedJson nodes = OrderedJson::array(), nodes_in_world = OrderedJson::array(), cylinders = OrderedJson::array();
   for (int i = 0; i < static_cast<int>(tube.nodes.size()); ++i) {
     nodes.push_back(to_json(tube.nodes[static_cast<std::size_t>(i)]));
     nodes_in_world.push_back(to_json(placed.node_in_world(i)));
   }
-  for (const Cylinder& cylinder : tube.cylinders) {
+  for (const tube::Cylinder& cylinder : tube.cylinders) {
     cylinders.push_back({{"node_a", cylinder.node_a}, {"node_b", cylinder.node_b}, {"order", cylinder.order}});
     if (cylinder.radius > 0.0) cylinders.back()["radius"] = to_json(cylinder.radius);
   }
@@ -105,7 +106,7 @@ void add_relations(const SceneRecord& record, const PileRelations& relations, Or
     OrderedJson& tube = json["tubes"][k];
     tube["amodal_pixels"] = relations.amodal_pixels[k];
     tube["visible_fraction"] = visible_fraction(record.tube_pixels[k], relations.amodal_pixels[k]);
-    tube["liftable"] = relations.is_liftable(static_cast<Label>(k + 1));
+    tube["liftable"] = relations.is_liftable(static_cast<cloud::Label>(k + 1));
   }
   json["occlusions"] = OrderedJson::array();
   for (const Occlusion& occlusion : relations.occlusions)
@@ -119,9 +120,10 @@ void add_relations(const SceneRecord& record, const PileRelations& relations, Or
 
 // ---- reading
 
-Color read_color(const JsonPlace& place) {
-  Color color = 0;
-  for (const JsonPlace& channel : place.elements(3)) color = color << 8 | static_cast<Color>(channel.whole(0, 255));
+cloud::Color read_color(const JsonPlace& place) {
+  cloud::Color color = 0;
+  for (const JsonPlace& channel : place.elements(3))
+    color = color << 8 | static_cast<cloud::Color>(channel.whole(0, 255));
   return color;
 }
 
@@ -159,12 +161,12 @@ PixelWindow read_window(const JsonPlace& place, const Scanner& scanner) {
   return window;
 }
 
-std::vector<Cylinder> read_cylinders(const JsonPlace& place, const Tube& tube) {
+std::vector<tube::Cylinder> read_cylinders(const JsonPlace& place, const tube::Tube& tube) {
   const double last_node = static_cast<double>(tube.nodes.size()) - 1.0;
-  std::vector<Cylinder> cylinders;
+  std::vector<tube::Cylinder> cylinders;
   for (const JsonPlace& element : place.elements()) {
-    Cylinder cylinder = {element.at("node_a").integer({0.0, last_node}), element.at("node_b").integer({0.0, last_node}),
-                         element.at("order").integer({0.0})};
+    tube::Cylinder cylinder = {element.at("node_a").integer({0.0, last_node}),
+                               element.at("node_b").integer({0.0, last_node}), element.at("order").integer({0.0})};
     if (element.has("radius")) {
       cylinder.radius = element.at("radius").number();
       if (!(cylinder.radius > tube.wall_thickness)) element.at("radius").fail("a number above the wall's thickness");
@@ -197,10 +199,10 @@ void check_centerline(const JsonPlace& place, const PlacedTube& placed) {
 
 PlacedTube read_tube(const JsonPlace& place, std::size_t label) {
   for (const char* key : {"id", "label"})
-    if (place.at(key).whole(0, std::numeric_limits<Label>::max()) != label)
+    if (place.at(key).whole(0, std::numeric_limits<cloud::Label>::max()) != label)
       place.at(key).fail(fmt::format("{}: tubes stand in the order of their labels", label));
   PlacedTube placed;
-  Tube& tube = placed.tube;
+  tube::Tube& tube = placed.tube;
   if (place.has("kind")) tube.kind = place.at("kind").text();
   tube.radius = place.at("radius").number();
   if (tube.radius <= 0.0) place.at("radius").fail("a number above 0");
@@ -224,8 +226,8 @@ std::size_t read_visible_pixels(const JsonPlace& place) {
 
 Contact read_contact(const JsonPlace& place, std::size_t tube_count) {
   Contact contact;
-  contact.label_a = static_cast<Label>(place.at("label_a").whole(0, tube_count));
-  contact.label_b = static_cast<Label>(place.at("label_b").whole(0, tube_count));
+  contact.label_a = static_cast<cloud::Label>(place.at("label_a").whole(0, tube_count));
+  contact.label_b = static_cast<cloud::Label>(place.at("label_b").whole(0, tube_count));
   if (contact.label_a >= contact.label_b) place.at("label_b").fail("above label_a");
   contact.position = place.at("position").vector();
   contact.normal = place.at("normal").vector();
@@ -233,8 +235,8 @@ Contact read_contact(const JsonPlace& place, std::size_t tube_count) {
   return contact;
 }
 
-Label read_tube_label(const JsonPlace& place, std::size_t tube_count, std::uint64_t lowest = 1) {
-  return static_cast<Label>(place.whole(lowest, tube_count));
+cloud::Label read_tube_label(const JsonPlace& place, std::size_t tube_count, std::uint64_t lowest = 1) {
+  return static_cast<cloud::Label>(place.whole(lowest, tube_count));
 }
 
 Occlusion read_occlusion(const JsonPlace& place, std::size_t tube_count) {
@@ -257,7 +259,7 @@ void check_groups(const JsonPlace& place, const std::vector<LabelGroup>& expecte
   for (const JsonPlace& group : place.elements()) {
     groups.emplace_back();
     for (const JsonPlace& label : group.elements())
-      groups.back().push_back(static_cast<Label>(label.whole(1, std::numeric_limits<Label>::max())));
+      groups.back().push_back(static_cast<cloud::Label>(label.whole(1, std::numeric_limits<cloud::Label>::max())));
   }
   if (groups != expected) place.fail("the groups that follow from above");
 }
@@ -278,7 +280,7 @@ PileRelations read_relations(const JsonPlace& root, const std::vector<std::size_
     tubes[k]
         .at("visible_fraction")
         .expect_near(visible_fraction(visible_pixels[k], relations.amodal_pixels[k]), kDistanceTolerance);
-    if (tubes[k].at("liftable").flag() != relations.is_liftable(static_cast<Label>(k + 1)))
+    if (tubes[k].at("liftable").flag() != relations.is_liftable(static_cast<cloud::Label>(k + 1)))
       tubes[k].at("liftable").fail("whether no tube is above it");
   }
   return relations;
@@ -303,7 +305,7 @@ std::string format_scene_json(const SceneRecord& record) {
   check_consistent(record);
   OrderedJson json = {{"format", kFormat},
                       {"format_version", kFormatVersion},
-                      {"tool_version", TUBEBIN_VERSION},
+                      {"tool_version", tool_version()},
                       {"units", {{"length", "m"}, {"mass", "kg"}, {"angle_deg", "degree"}, {"image", "pixel"}}},
                       {"id", record.id},
                       {"seed", record.seed},
@@ -348,4 +350,4 @@ SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
 
 SceneRecord read_scene_json(const std::string& path) { return parse_scene_json(read_file(path), path); }
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

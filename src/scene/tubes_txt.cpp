@@ -12,7 +12,7 @@
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/text_scan.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 namespace {
 
 /// The published files keep six digits: a millionth of a metre, and so an axis of 20 mm to some 1e-4.
@@ -77,7 +77,7 @@ class Parser {
     return {read_number(words[first], what), read_number(words[first + 1], what), read_number(words[first + 2], what)};
   }
 
-  Tube read_tube(std::uint32_t number, std::uint32_t count) {
+  tube::Tube read_tube(std::uint32_t number, std::uint32_t count) {
     const std::optional<std::string_view> line = lines_.next();
     if (!line || words_of(*line).empty())
       throw_io_error("{}: truncated after line {}: the first line says {} tubes, but there are only {}", name_,
@@ -89,7 +89,7 @@ class Parser {
     const std::uint32_t edge_count = read_count(words[2], "edge count");
     if (node_count == 0) fail("a tube needs a node");
 
-    Tube tube;
+    tube::Tube tube;
     node_index_.clear();
     node_radii_.clear();
     for (std::uint32_t i = 0; i < node_count; ++i) read_node(tube);
@@ -99,7 +99,7 @@ class Parser {
     return tube;
   }
 
-  void read_node(Tube& tube) {
+  void read_node(tube::Tube& tube) {
     const std::vector<std::string_view> words = read_line(5, kNodeLine);
     if (!node_index_.emplace(words[0], static_cast<int>(tube.nodes.size())).second)
       fail("the node id {} stands twice in this tube", excerpt(words[0]));
@@ -116,7 +116,7 @@ class Parser {
   }
 
   /// A node is as thick as the thickest edge there, as format_tubes_txt writes it.
-  void check_node_radii(const Tube& tube) const {
+  void check_node_radii(const tube::Tube& tube) const {
     const std::vector<double> radii = tube.node_radii();
     for (const auto& [id, index] : node_index_) {
       const auto i = static_cast<std::size_t>(index);
@@ -125,11 +125,11 @@ class Parser {
     }
   }
 
-  void read_edge(Tube& tube) {
+  void read_edge(tube::Tube& tube) {
     const std::vector<std::string_view> words = read_line(13, kEdgeLine);
     const std::optional<int> order = to_number<int>(words[3]);
     if (!order || *order < 1) fail("order '{}' is not a whole number from 1", excerpt(words[3]));
-    Cylinder cylinder = {find_node(words[1]), find_node(words[2]), *order - 1};
+    tube::Cylinder cylinder = {find_node(words[1]), find_node(words[2]), *order - 1};
     const double radius = read_radius(words[4]);
     if (radius != tube.radius) cylinder.radius = radius;
     const Vec3 center = read_point(words, 5, "centre");
@@ -145,7 +145,7 @@ class Parser {
     return found->second;
   }
 
-  void check_edge(const Tube& tube, const Cylinder& cylinder, const Vec3& center, const Quat& rotation,
+  void check_edge(const tube::Tube& tube, const tube::Cylinder& cylinder, const Vec3& center, const Quat& rotation,
                   double length) const {
     const Vec3& a = tube.nodes[static_cast<std::size_t>(cylinder.node_a)];
     const Vec3& b = tube.nodes[static_cast<std::size_t>(cylinder.node_b)];
@@ -162,7 +162,7 @@ class Parser {
     if (!(axis_error <= kAxisTolerance)) fail("the axis is {:.2e} off the direction between its nodes", axis_error);
   }
 
-  void check_every_node_is_used(const Tube& tube) const {
+  void check_every_node_is_used(const tube::Tube& tube) const {
     if (tube.nodes.size() == 1) return;  // a sphere
     const std::vector<int> degrees = tube.node_degrees();
     for (const auto& [id, index] : node_index_)
@@ -188,14 +188,14 @@ std::string format_tubes_txt(const std::vector<PlacedTube>& tubes) {
   std::string text = fmt::format("{}\n", tubes.size());
   const auto out = std::back_inserter(text);
   for (std::size_t k = 0; k < tubes.size(); ++k) {
-    const Tube& tube = tubes[k].tube;
+    const tube::Tube& tube = tubes[k].tube;
     fmt::format_to(out, "{} {} {}\n", k + 1, tube.nodes.size(), tube.cylinders.size());
     const std::vector<double> radii = tube.node_radii();
     for (int i = 0; i < static_cast<int>(tube.nodes.size()); ++i) {
       const Vec3 p = tubes[k].node_in_world(i);
       fmt::format_to(out, "{} {} {} {} {}\n", i + 1, p.x(), p.y(), p.z(), radii[static_cast<std::size_t>(i)]);
     }
-    for (const Cylinder& cylinder : tube.cylinders) {
+    for (const tube::Cylinder& cylinder : tube.cylinders) {
       const Vec3 a = tubes[k].node_in_world(cylinder.node_a);
       const Vec3 b = tubes[k].node_in_world(cylinder.node_b);
       const Vec3 c = (a + b) / 2.0;
@@ -208,4 +208,4 @@ std::string format_tubes_txt(const std::vector<PlacedTube>& tubes) {
   return text;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

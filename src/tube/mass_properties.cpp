@@ -8,7 +8,7 @@
 
 #include "tubebin/tube/tube.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 namespace {
 
 constexpr int kRings = 12;
@@ -156,4 +156,4 @@ MassProperties mass_properties(const Tube& tube) {
   return properties;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

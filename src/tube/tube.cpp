@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tubebin {
+namespace tubebin::tube {
 
 std::vector<double> Tube::node_radii() const {
   std::vector<double> radii(nodes.size(), 0.0);
@@ -50,4 +50,4 @@ double Tube::length() const {
   return sum;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

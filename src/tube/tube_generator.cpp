@@ -4,7 +4,7 @@
 
 #include "tubebin/core/shuffle.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 namespace {
 
 Tube generate_tube(const TubeOptions& options, Random& random) {
@@ -109,4 +109,4 @@ std::vector<Tube> generate_mixed_tubes(int count, const std::vector<TubeKind>& k
   return tubes;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

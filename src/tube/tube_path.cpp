@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::tube {
 
 void describe(Fields& fields, PathOptions& options) {
   fields.number("length", options.length, {0.001, 100.0}, "m", "length l, the sum of a tube's cylinders");
@@ -98,4 +98,4 @@ void append_path(int start, const std::vector<Vec3>& nodes, Tube& tube) {
   }
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

@@ -8,10 +8,10 @@
 #include <memory>
 #include <string>
 
-#include "evaluation/synthetic_results.hpp"
+#include "support/synthetic_results.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
-#include "tubebin/dataset/model_cloud.hpp"
-#include "tubebin/evaluation/results_folder.hpp"
+#include "tubebin/results/model_cloud.hpp"
+#include "tubebin/results/results_folder.hpp"
 
 namespace tubebin {
 namespace {
@@ -20,28 +20,28 @@ using Job = std::function<std::size_t()>;
 
 /// Three tubes, dropped and scanned; without writing, whose cost is the disk's.
 Job generate() {
-  DatasetConfig config;
+  dataset::DatasetConfig config;
   config.scanner.width = 640;
   config.scanner.height = 400;
   return [config] {
-    GeneratedScene scene;
+    dataset::GeneratedScene scene;
     for (int attempt = 0; attempt == 0 || !scene.failure.empty(); ++attempt)
-      scene = generate_scene(config, {.set = "A", .tubes = 3, .case_number = 1}, attempt);
+      scene = dataset::generate_scene(config, {.set = "A", .tubes = 3, .case_number = 1}, attempt);
     return scene.content.cloud.size();
   };
 }
 
 Job model() {
   return [] {
-    const CloudToModel input = read_cloud_to_model(TUBEBIN_SOURCE_DIR "/data/A10/003/cloud.pcd");
-    return model_cloud(input, ModelConfig{}).tubes.size();
+    const results::CloudToModel input = results::read_cloud_to_model(TUBEBIN_SOURCE_DIR "/data/A10/003/cloud.pcd");
+    return results::model_cloud(input, results::ModelConfig{}).tubes.size();
   };
 }
 
 Job evaluate() {
   const auto folder = std::make_shared<testing::TemporaryFolder>();
   testing::write_synthetic_sweep(folder->path(), {});
-  return [folder] { return read_results({folder->path() / "results"}, {}).runs.size(); };
+  return [folder] { return results::read_results({folder->path() / "results"}, {}).runs.size(); };
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "dataset/program.hpp"
+#include "support/program.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin::testing {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "dataset/program.hpp"
+#include "support/program.hpp"
 #include "tubebin/dataset/scene_id.hpp"
 
 namespace tubebin {
@@ -149,11 +149,11 @@ TEST(Shards, TakeEverySceneOnceTogether) {
   config.cases = 5;
   std::vector<SceneId> together;
   for (const char* text : {"1/3", "2/3", "3/3"})
-    for (const SceneId& id : list_scenes(config, parse_shard(text))) together.push_back(id);
+    for (const SceneId& id : list_scenes(config, jobs::parse_shard(text))) together.push_back(id);
   EXPECT_THAT(together, ::testing::UnorderedElementsAreArray(list_scenes(config)));
   EXPECT_EQ(list_scenes(config).back().name(), "A7/005");
   for (const char* bad : {"", "1", "0/3", "4/3", "1/0", "1/3x", "-1/2", "a/b", "1/"})
-    EXPECT_THROW(parse_shard(bad), ConfigError) << bad;
+    EXPECT_THROW(jobs::parse_shard(bad), ConfigError) << bad;
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // The program as a user runs it, on a quick configuration.
 #include <gmock/gmock.h>
 
-#include "dataset/program.hpp"
+#include "support/program.hpp"
 #include "tubebin/dataset/manifest.hpp"
 #include "tubebin/dataset/verify_dataset.hpp"
 #include "tubebin/render/preview.hpp"
@@ -9,6 +9,8 @@
 #include "tubebin/scene/tubes_txt.hpp"
 
 namespace tubebin::testing {
+
+using namespace dataset;
 namespace {
 
 using ::testing::AllOf;
@@ -39,12 +41,12 @@ TEST_F(GenerateDataset, WritesWhatItPromises) {
     for (const auto& [name, file] : record.files)
       EXPECT_EQ(record_bytes(read_text(data_ + "/" + id + "/" + name)), file) << id << " " << name;
   }
-  const SceneRecord scene = read_scene_json(data_ + "/Q3/002/scene.json");
+  const scene::SceneRecord scene = scene::read_scene_json(data_ + "/Q3/002/scene.json");
   EXPECT_EQ(scene.id, "Q3/002");
   EXPECT_EQ(scene.scene.tubes.size(), 3u);
-  EXPECT_EQ(read_tubes_txt(data_ + "/Q3/002/tubes.txt").size(), 3u);
-  const Cloud cloud = read_cloud(data_ + "/Q3/002/cloud.pcd");
-  EXPECT_EQ(std::set<Label>(cloud.labels.begin(), cloud.labels.end()), (std::set<Label>{0, 1, 2, 3}));
+  EXPECT_EQ(scene::read_tubes_txt(data_ + "/Q3/002/tubes.txt").size(), 3u);
+  const cloud::Cloud cloud = cloud::read_cloud(data_ + "/Q3/002/cloud.pcd");
+  EXPECT_EQ(std::set<cloud::Label>(cloud.labels.begin(), cloud.labels.end()), (std::set<cloud::Label>{0, 1, 2, 3}));
 }
 
 TEST_F(GenerateDataset, MakesTheSameBytesForAnyJobsAndShards) {
@@ -160,7 +162,7 @@ TEST_F(GenerateDataset, WritesEveryFormatSoThatItVerifies) {
 }
 
 TEST_F(GenerateDataset, DrawsPreviewsThatNeitherChangeNorDependOnTheRest) {
-  if (!can_render()) GTEST_SKIP() << "this build cannot draw";
+  if (!render::can_render()) GTEST_SKIP() << "this build cannot draw";
   ASSERT_EQ(generate(data_, {"--cases", "2"}).exit_code, 0);
   ASSERT_EQ(generate(folder_ / "one", {"--cases", "2", "--preview", "--jobs", "1"}).exit_code, 0);
   ASSERT_EQ(generate(folder_ / "two", {"--cases", "2", "--preview", "--jobs", "2"}).exit_code, 0);
@@ -247,16 +249,19 @@ class VerifyScene : public Verify {
     write_text(data_ + "/Q3/001/" + file, bytes);
     record.files[file] = record_bytes(bytes);
     return fmt::format(
-        "{}", fmt::join(verify_scene(DatasetFiles(data_), read_dataset_config(data_), {"Q", 3, 1}, record), "\n"));
+        "{}",
+        fmt::join(verify_scene(scene::DatasetFiles(data_), read_dataset_config(data_), {"Q", 3, 1}, record), "\n"));
   }
-  std::string problems_with(const Cloud& cloud) {
-    return problems_with("cloud.pcd", format_cloud(cloud, CloudFormat::pcd_binary));
+  std::string problems_with(const cloud::Cloud& cloud) {
+    return problems_with("cloud.pcd", cloud::format_cloud(cloud, cloud::CloudFormat::pcd_binary));
   }
-  std::string problems_with(const SceneRecord& scene) { return problems_with("scene.json", format_scene_json(scene)); }
+  std::string problems_with(const scene::SceneRecord& scene) {
+    return problems_with("scene.json", scene::format_scene_json(scene));
+  }
 
-  Cloud cloud() { return read_cloud(data_ + "/Q3/001/cloud.pcd"); }
-  SceneRecord scene() { return read_scene_json(data_ + "/Q3/001/scene.json"); }
-  std::size_t tube_point(const Cloud& cloud) {
+  cloud::Cloud cloud() { return cloud::read_cloud(data_ + "/Q3/001/cloud.pcd"); }
+  scene::SceneRecord scene() { return scene::read_scene_json(data_ + "/Q3/001/scene.json"); }
+  std::size_t tube_point(const cloud::Cloud& cloud) {
     return static_cast<std::size_t>(std::find(cloud.labels.begin(), cloud.labels.end(), 2u) - cloud.labels.begin());
   }
 };
@@ -264,23 +269,23 @@ class VerifyScene : public Verify {
 TEST_F(VerifyScene, AcceptsASoundScene) { EXPECT_EQ(problems_with(cloud()), ""); }
 
 TEST_F(VerifyScene, FindsAPointOffItsSurface) {
-  Cloud moved = cloud();
+  cloud::Cloud moved = cloud();
   moved.points[tube_point(moved)].z() += 2e-5f;
   EXPECT_THAT(problems_with(moved), HasSubstr("1 points lie more than 0.005 mm off the surface"));
 }
 
 TEST_F(VerifyScene, FindsWrongLabelsAndColors) {
-  Cloud relabelled = cloud();
+  cloud::Cloud relabelled = cloud();
   relabelled.labels[tube_point(relabelled)] = 1;
   EXPECT_THAT(problems_with(relabelled), AllOf(HasSubstr("1 points lie"), HasSubstr("1 points have another colour"),
                                                HasSubstr("pixels of the tubes")));
-  Cloud unknown = cloud();
+  cloud::Cloud unknown = cloud();
   unknown.labels[tube_point(unknown)] = 4;
   EXPECT_THAT(problems_with(unknown), HasSubstr("1 points have labels of no tube"));
 }
 
 TEST_F(VerifyScene, FindsACloudOfAnotherSize) {
-  Cloud flat = cloud();
+  cloud::Cloud flat = cloud();
   flat.width = static_cast<std::uint32_t>(flat.size());
   flat.height = 1;
   EXPECT_THAT(problems_with(flat), HasSubstr("the window of scene.json"));
@@ -293,16 +298,16 @@ TEST_F(VerifyScene, FindsAnotherScenesTruth) {
 }
 
 TEST_F(VerifyScene, FindsColorsThatAreNotUnique) {
-  SceneRecord same = scene();
+  scene::SceneRecord same = scene();
   same.colors[2] = same.colors[1];
   EXPECT_THAT(problems_with(same), HasSubstr("3 different colours for 3 tubes and the bin"));
 }
 
 TEST_F(VerifyScene, FindsTubesThatInterpenetrateOrFloat) {
-  SceneRecord deep = scene();
+  scene::SceneRecord deep = scene();
   deep.contacts.at(0).depth = 0.0012;
   EXPECT_THAT(problems_with(deep), HasSubstr("interpenetrate by 1.200 mm, more than the 0.500 mm allowed"));
-  SceneRecord floating = scene();
+  scene::SceneRecord floating = scene();
   floating.contacts.clear();
   EXPECT_THAT(problems_with(floating), HasSubstr("tube 3 floats"));
 }

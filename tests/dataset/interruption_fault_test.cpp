@@ -8,11 +8,13 @@
 #include <random>
 #include <thread>
 
-#include "dataset/faults.hpp"
+#include "support/faults.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
 #include "tubebin/dataset/manifest.hpp"
 
 namespace tubebin::testing {
+
+using namespace dataset;
 namespace {
 
 using namespace std::chrono_literals;

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "dataset/program.hpp"
+#include "support/program.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
 #include "tubebin/dataset/manifest.hpp"
 #include "tubebin/dataset/scene_id.hpp"

@@ -3,11 +3,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "dataset/program.hpp"
+#include "support/program.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/scene/scene_json.hpp"
 
 namespace tubebin::testing {
+
+using namespace dataset;
 namespace {
 
 using ::testing::AllOf;
@@ -40,12 +42,12 @@ TEST_F(MergedScanners, AreVerifiedModelledAndEvaluated) {
     EXPECT_EQ(verified.exit_code, 0) << verified.out << verified.error;
   }
   const std::string scene = folder_ / "data/Q3/001";
-  const SceneRecord record = read_scene_json(scene + "/scene.json");
+  const scene::SceneRecord record = scene::read_scene_json(scene + "/scene.json");
   ASSERT_EQ(record.scene.further_scanners.size(), 1U);
   EXPECT_EQ(record.scene.further_scanners[0].position, Vec3(0.9, 0, 1.7));
   EXPECT_EQ(record.scene.further_scanners[0].effects.lateral_noise, 0.1);
-  EXPECT_EQ(format_scene_json(record), read_text(scene + "/scene.json"));
-  const Cloud cloud = read_cloud(scene + "/cloud.ply");
+  EXPECT_EQ(scene::format_scene_json(record), read_text(scene + "/scene.json"));
+  const cloud::Cloud cloud = cloud::read_cloud(scene + "/cloud.ply");
   EXPECT_EQ(std::ranges::count(cloud.sources, 0U) + std::ranges::count(cloud.sources, 1U),
             static_cast<std::ptrdiff_t>(cloud.size()));
   EXPECT_GT(std::ranges::count(cloud.sources, 1U), 1000);
@@ -63,7 +65,7 @@ TEST_F(MergedScanners, AreVerifiedModelledAndEvaluated) {
   const ProgramResult evaluated = Program({program_path("evaluate"), folder_ / "results", "--format", "json"}).wait();
   ASSERT_EQ(evaluated.exit_code, 0) << evaluated.error;
   EXPECT_GT(nlohmann::json::parse(evaluated.out)["groups"][0]["micro_recall"].get<double>(), 0.9);
-  const Cloud filtered = read_cloud(folder_ / "results/Q3/001/centerline_1/filtered.pcd");
+  const cloud::Cloud filtered = cloud::read_cloud(folder_ / "results/Q3/001/centerline_1/filtered.pcd");
   EXPECT_EQ(filtered.sources.size(), filtered.size());
 }
 
@@ -81,7 +83,7 @@ TEST_F(MergedScanners, ElementsTakeWhatTheyLeaveOutFromAnIncludedScanner) {
   write_text(folder_ / "base.yaml", "set: Q\nseed: 5\ntubes: [1]\ncases: 1\nscanner: {width: 320, height: 200}\n");
   const ProgramResult made = generate("include: base.yaml\nscanners:\n  - {}\n  - {position: [0.1, 0, 2]}\n");
   ASSERT_EQ(made.exit_code, 0) << made.error;
-  const SceneRecord record = read_scene_json(folder_ / "data/Q1/001/scene.json");
+  const scene::SceneRecord record = scene::read_scene_json(folder_ / "data/Q1/001/scene.json");
   EXPECT_EQ(record.scene.scanner.width, 320);
   EXPECT_EQ(record.scene.further_scanners.at(0).width, 320);
 }

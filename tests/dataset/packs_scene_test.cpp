@@ -1,9 +1,11 @@
 // Parts of a data set whose scenes are packed into tar files.
 #include "dataset/shards.hpp"
-#include "tubebin/dataset/folder_lock.hpp"
+#include "tubebin/jobs/folder_lock.hpp"
 #include "tubebin/scene/dataset_files.hpp"
 
 namespace tubebin::testing {
+
+using namespace dataset;
 namespace {
 
 using ::testing::HasSubstr;
@@ -12,7 +14,7 @@ class Packs : public Shards {
  protected:
   /// Files of all scenes, loose or packed, by the names that they have loose.
   static std::map<std::string, std::string> all_files(const std::string& dataset) {
-    const DatasetFiles files(dataset);
+    const scene::DatasetFiles files(dataset);
     std::map<std::string, std::string> found;
     for (const std::string& scene : files.scenes())
       for (const char* file : {"cloud.pcd", "scene.json", "tubes.txt"})
@@ -62,7 +64,7 @@ TEST_F(Packs, ArePackedByOneRunAtATime) {
   const std::vector<std::string> part = {"--shard", "1/2", "--pack"};
   ASSERT_EQ(generate(data_, {"--shard", "2/2", "--pack"}).exit_code, 0);
   {
-    const FolderLock other(parts_folder(data_), Shard{.index = 1, .count = 2});
+    const jobs::FolderLock other(parts_folder(data_), jobs::Shard{.index = 1, .count = 2});
     const ProgramResult refused = generate(data_, part);
     EXPECT_EQ(refused.exit_code, 1);  // a scheduler may start it again
     EXPECT_THAT(refused.error, HasSubstr(fmt::format("process {} is packing part 00001-of-00002", getpid())));

@@ -2,12 +2,14 @@
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
 
-#include "dataset/program.hpp"
+#include "support/program.hpp"
 #include "tubebin/dataset/manifest.hpp"
 #include "tubebin/dataset/verify_dataset.hpp"
 #include "tubebin/scene/scene_json.hpp"
 
 namespace tubebin::testing {
+
+using namespace dataset;
 namespace {
 
 using ::testing::HasSubstr;
@@ -24,7 +26,7 @@ std::string make_scene(const TemporaryFolder& folder, const std::string& name, c
 std::string effects() { return "include: " TUBEBIN_SOURCE_DIR "/config/scanner_zivid_like.yaml\n"; }
 std::string exact() { return "include: " TUBEBIN_SOURCE_DIR "/config/set_a.yaml\n"; }
 
-TEST(ScannerEffects, CleanTwinAndTubesAreThoseOfTheExactDataSet) {
+TEST(scene::ScannerEffects, CleanTwinAndTubesAreThoseOfTheExactDataSet) {
   const TemporaryFolder folder;
   const std::string noisy = make_scene(folder, "noisy", effects()), clean = make_scene(folder, "clean", exact());
   auto files = scene_files(noisy), exact_files = scene_files(clean);
@@ -36,18 +38,18 @@ TEST(ScannerEffects, CleanTwinAndTubesAreThoseOfTheExactDataSet) {
   EXPECT_EQ(run_generate_dataset({"--verify", noisy}).exit_code, 0);
 }
 
-TEST(ScannerEffects, VerifyFindsAPointThatIsNotTheSeeds) {
+TEST(scene::ScannerEffects, VerifyFindsAPointThatIsNotTheSeeds) {
   const TemporaryFolder folder;
   const std::string data = make_scene(folder, "noisy", effects());
   for (const std::string file : {"cloud.pcd", "cloud_clean.pcd"}) {
     const std::string path = data + "/Q3/001/" + file, sound = read_text(path);
-    Cloud cloud = read_cloud(path);
-    std::ranges::find_if(cloud.points, is_finite)->y() += 2e-5F;
-    const std::string bytes = format_cloud(cloud, CloudFormat::pcd_binary);
+    cloud::Cloud cloud = cloud::read_cloud(path);
+    std::ranges::find_if(cloud.points, cloud::is_finite)->y() += 2e-5F;
+    const std::string bytes = cloud::format_cloud(cloud, cloud::CloudFormat::pcd_binary);
     write_text(path, bytes);
     ManifestRecord record = *Manifest(data).find("Q3/001");
     record.files[file] = record_bytes(bytes);
-    const auto problems = verify_scene(DatasetFiles(data), read_dataset_config(data), {"Q", 3, 1}, record);
+    const auto problems = verify_scene(scene::DatasetFiles(data), read_dataset_config(data), {"Q", 3, 1}, record);
     EXPECT_THAT(fmt::format("{}", fmt::join(problems, "\n")), HasSubstr("1 points"));
     write_text(path, sound);
   }

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "dataset/program.hpp"
+#include "support/program.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/scene/scene_json.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 
 namespace tubebin::testing {
+
+using namespace dataset;
 namespace {
 
 using ::testing::HasSubstr;
@@ -17,7 +19,8 @@ using ::testing::HasSubstr;
 std::string source_file(const std::string& name) { return TUBEBIN_SOURCE_DIR "/" + name; }
 
 /// Makes one scene of `tubes` objects and verifies it.
-SceneRecord make_one(const TemporaryFolder& folder, const std::string& config, const std::string& set, int tubes) {
+scene::SceneRecord make_one(const TemporaryFolder& folder, const std::string& config, const std::string& set,
+                            int tubes) {
   const std::string data = folder / "data";
   const ProgramResult made = run_generate_dataset(
       {config, "--output", data, "--tubes", fmt::format("{}", tubes), "--cases", "1", "--jobs", "1"});
@@ -29,30 +32,30 @@ SceneRecord make_one(const TemporaryFolder& folder, const std::string& config, c
                                source_file("docs/scene.schema.json") + " " + scene + "/scene.json";
   const int status = std::system(validate.c_str());
   EXPECT_TRUE(status == 0 || WEXITSTATUS(status) == 77) << validate;
-  EXPECT_EQ(read_tubes_txt(scene + "/tubes.txt").size(), static_cast<std::size_t>(tubes));
-  return read_scene_json(scene + "/scene.json");
+  EXPECT_EQ(scene::read_tubes_txt(scene + "/tubes.txt").size(), static_cast<std::size_t>(tubes));
+  return scene::read_scene_json(scene + "/scene.json");
 }
 
 TEST(ShapeScenes, PublishedSetCHasTheTreesOfThePublishedFiles) {
   const TemporaryFolder folder;
-  const SceneRecord record = make_one(folder, source_file("config/published_c.yaml"), "C", 4);
+  const scene::SceneRecord record = make_one(folder, source_file("config/published_c.yaml"), "C", 4);
   // As in the published files: 1-2 of 0.30 m with 1-3, 1-4 of 0.10 m; 2-5 of 0.10 m and 2-6 of 0.15 m.
-  for (const PlacedTube& placed : record.scene.tubes) {
+  for (const scene::PlacedTube& placed : record.scene.tubes) {
     const std::vector<int> degrees = placed.tube.node_degrees();
     EXPECT_EQ(std::ranges::count(degrees, 3), 2);
     EXPECT_EQ(std::ranges::count(degrees, 1), 4);
     EXPECT_NEAR(placed.tube.length(), 0.75, 1e-9);
-    EXPECT_EQ(centerline_paths(placed.tube).size(), 5u);
+    EXPECT_EQ(scene::centerline_paths(placed.tube).size(), 5u);
   }
 }
 
 TEST(ShapeScenes, AMixedBinHasAllKinds) {
   const TemporaryFolder folder;
-  const SceneRecord record = make_one(folder, source_file("config/mixed.yaml"), "mixed", 6);
-  const auto is_ball = [](const PlacedTube& placed) { return placed.tube.cylinders.empty(); };
+  const scene::SceneRecord record = make_one(folder, source_file("config/mixed.yaml"), "mixed", 6);
+  const auto is_ball = [](const scene::PlacedTube& placed) { return placed.tube.cylinders.empty(); };
   EXPECT_EQ(std::ranges::count_if(record.scene.tubes, is_ball), 1);
-  for (const PlacedTube& placed : record.scene.tubes) {
-    const Tube& tube = placed.tube;
+  for (const scene::PlacedTube& placed : record.scene.tubes) {
+    const tube::Tube& tube = placed.tube;
     const std::vector<int> degrees = tube.node_degrees();
     const char* const kind = is_ball(placed)                       ? "ball"
                              : tube.wall_thickness > 0.0           ? "pipe"
@@ -81,10 +84,10 @@ TEST(ShapeScenes, ACurveWhoseRadiusVariesIsMadeAndVerified) {
     write_text(config, fmt::format("set: Q\nseed: 5\nscanner: {{width: 640, height: 400}}\noutput: {{preview: true}}\n"
                                    "tube: {{shape: curve, radius: 0.01, radius_variation: 0.4, wall_thickness: {}}}\n",
                                    wall));
-    const SceneRecord record = make_one(folder, config, "Q", 3);
-    const auto from_text = read_tubes_txt(folder / "data/Q3/001/tubes.txt");
+    const scene::SceneRecord record = make_one(folder, config, "Q", 3);
+    const auto from_text = scene::read_tubes_txt(folder / "data/Q3/001/tubes.txt");
     for (std::size_t k = 0; k < 3; ++k) {
-      const Tube &tube = record.scene.tubes[k].tube, &text = from_text[k].tube;
+      const tube::Tube &tube = record.scene.tubes[k].tube, &text = from_text[k].tube;
       EXPECT_GT(tube.radius_max(), 0.0101);
       for (std::size_t i = 0; i < tube.cylinders.size(); ++i)
         EXPECT_NEAR(text.radius_of(text.cylinders[i]), tube.radius_of(tube.cylinders[i]), 1e-12);

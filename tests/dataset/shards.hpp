@@ -3,10 +3,12 @@
 
 #include <gmock/gmock.h>
 
-#include "dataset/faults.hpp"
+#include "support/faults.hpp"
 #include "tubebin/dataset/manifest.hpp"
 
 namespace tubebin::testing {
+
+using namespace dataset;
 
 inline ProgramResult run_program(const std::string& name, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), program_path(name));

@@ -6,6 +6,8 @@
 #include "tubebin/dataset/dataset_folder.hpp"
 
 namespace tubebin::testing {
+
+using namespace dataset;
 namespace {
 
 using ::testing::AllOf;
@@ -85,7 +87,7 @@ TEST_F(Shards, LeaveTheUnfinishedScenesOfOthersAlone) {
           DatasetConfig config = read_dataset_config(one_machine_);
           return config;
         }(),
-        parse_shard(part));
+        jobs::parse_shard(part));
   };
   const std::vector<SceneId> first = of("1/2");
   const bool is_first = std::ranges::find(first, SceneId{"Q", 1, 1}) != first.end();
@@ -116,7 +118,7 @@ TEST_F(Shards, RunTwiceAtOnceDoNoHarm) {
 }
 
 TEST_F(Shards, KeepOutWhoWantsTheFolderForHimself) {
-  const FolderLock part((fs::create_directories(data_), data_), FolderLock::Kind::part);
+  const jobs::FolderLock part((fs::create_directories(data_), data_), jobs::FolderLock::Kind::part);
   EXPECT_EQ(generate(data_, {"--shard", "1/2"}).exit_code, 0);
   EXPECT_EQ(generate(data_).exit_code, 2);
   EXPECT_EQ(run_generate_dataset({"--merge", data_}).exit_code, 2);

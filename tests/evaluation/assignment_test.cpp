@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "evaluation/commands.hpp"
+#include "support/commands.hpp"
 #include "tubebin/core/random.hpp"
 
 namespace tubebin {

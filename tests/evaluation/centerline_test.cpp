@@ -6,8 +6,8 @@ namespace tubebin {
 namespace {
 
 /// A straight tube between two points, world frame.
-PlacedTube straight_tube(const Vec3& start, const Vec3& end, double radius = 0.0125) {
-  PlacedTube placed;
+scene::PlacedTube straight_tube(const Vec3& start, const Vec3& end, double radius = 0.0125) {
+  scene::PlacedTube placed;
   placed.tube.radius = radius;
   placed.tube.nodes = {start, end};
   placed.tube.cylinders = {{0, 1, 0}};
@@ -15,7 +15,7 @@ PlacedTube straight_tube(const Vec3& start, const Vec3& end, double radius = 0.0
 }
 
 TEST(Centerline, PosesTheNodes) {
-  PlacedTube tube = straight_tube({0, 0, 0}, {1, 0, 0});
+  scene::PlacedTube tube = straight_tube({0, 0, 0}, {1, 0, 0});
   tube.world_from_tube = make_pose(Quat(Eigen::AngleAxisd(radians(90.0), Vec3::UnitZ())), {0, 0, 2});
   const Centerline line = centerline(tube);
   ASSERT_EQ(line.size(), 1U);
@@ -23,7 +23,7 @@ TEST(Centerline, PosesTheNodes) {
 }
 
 TEST(Centerline, ParallelOffsetIsTheError) {
-  Scene scene;
+  scene::Scene scene;
   scene.tubes = {straight_tube({0, 0, 0.01}, {0.5, 0, 0.01})};
   const auto samples = sample_centerlines(scene);
   EXPECT_EQ(samples[0].points.size(), 100U);
@@ -36,7 +36,7 @@ TEST(Centerline, ParallelOffsetIsTheError) {
 }
 
 TEST(Centerline, AModelThatIsTooShortErrsInOneDirection) {
-  Scene scene;
+  scene::Scene scene;
   scene.tubes = {straight_tube({0, 0, 0}, {0.5, 0, 0})};
   const Centerline model = {{{0, 0, 0}, {0.4, 0, 0}}};
   const auto samples = sample_centerlines(scene);
@@ -47,7 +47,7 @@ TEST(Centerline, AModelThatIsTooShortErrsInOneDirection) {
 }
 
 TEST(Centerline, BridgedPiecesAreNotMeasured) {
-  Scene scene;
+  scene::Scene scene;
   scene.tubes = {straight_tube({0, 0, 0}, {0.5, 0, 0})};
   const Centerline model = {{{0, 0, 0}, {0.3, 0, 0}}, {{0.3, 0, 0}, {0.3, 0.4, 0}, true}};
   const auto samples = sample_centerlines(scene);
@@ -56,7 +56,7 @@ TEST(Centerline, BridgedPiecesAreNotMeasured) {
 
 /// A tube of radius r above another hides 2 r (h_scanner - h_low) / (h_scanner - h_high) of it.
 TEST(Centerline, ACrossingTubeHidesItsShadow) {
-  Scene scene;
+  scene::Scene scene;
   scene.scanner.position = {0, 0, 2};
   scene.tubes = {straight_tube({-0.25, 0, 0.0125}, {0.25, 0, 0.0125}),
                  straight_tube({0, -0.2, 0.0375}, {0, 0.2, 0.0375})};
@@ -67,7 +67,7 @@ TEST(Centerline, ACrossingTubeHidesItsShadow) {
 }
 
 TEST(Centerline, ATubeUnderAnotherAlongItsWholeLengthIsHidden) {
-  Scene scene;
+  scene::Scene scene;
   scene.scanner.position = {0, 0, 2};
   scene.tubes = {straight_tube({0, -0.2, 0.0125}, {0, 0.2, 0.0125}),
                  straight_tube({0, -0.25, 0.0375}, {0, 0.25, 0.0375})};

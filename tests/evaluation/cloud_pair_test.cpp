@@ -17,20 +17,20 @@ using ::testing::HasSubstr;
 
 const float nan = std::numeric_limits<float>::quiet_NaN();
 
-Cloud random_cloud(std::size_t size, Random& random) {
-  Cloud cloud;
+cloud::Cloud random_cloud(std::size_t size, Random& random) {
+  cloud::Cloud cloud;
   for (std::size_t i = 0; i < size; ++i) {
     cloud.points.emplace_back(static_cast<float>(random.uniform(-0.3, 0.3)),
                               static_cast<float>(random.uniform(-0.2, 0.2)),
                               static_cast<float>(random.uniform(0.0, 0.2)));
-    cloud.labels.push_back(static_cast<Label>(random.integer(0, 10)));
+    cloud.labels.push_back(static_cast<cloud::Label>(random.integer(0, 10)));
   }
   cloud.width = static_cast<std::uint32_t>(size);
   return cloud;
 }
 
-Cloud pick(const Cloud& cloud, const std::vector<std::size_t>& indices) {
-  Cloud picked;
+cloud::Cloud pick(const cloud::Cloud& cloud, const std::vector<std::size_t>& indices) {
+  cloud::Cloud picked;
   for (const std::size_t i : indices) {
     picked.points.push_back(cloud.points[i]);
     if (!cloud.labels.empty()) picked.labels.push_back(cloud.labels[i]);
@@ -47,11 +47,13 @@ std::vector<std::size_t> shuffled(std::size_t size, Random& random) {
   return indices;
 }
 
-PairedIds pair(const Cloud& filtered, const Cloud& labeled, SegmentField field = SegmentField::automatic) {
+PairedIds pair(const cloud::Cloud& filtered, const cloud::Cloud& labeled,
+               SegmentField field = SegmentField::automatic) {
   return pair_clouds({filtered, "filtered.pcd"}, {labeled, "labeled.pcd"}, field);
 }
 
-std::string error_of(const Cloud& filtered, const Cloud& labeled, SegmentField field = SegmentField::automatic) {
+std::string error_of(const cloud::Cloud& filtered, const cloud::Cloud& labeled,
+                     SegmentField field = SegmentField::automatic) {
   try {
     pair(filtered, labeled, field);
   } catch (const IoError& error) {
@@ -62,9 +64,9 @@ std::string error_of(const Cloud& filtered, const Cloud& labeled, SegmentField f
 
 TEST(CloudPair, AnyOrderGivesTheSame) {
   Random random(1);
-  const Cloud filtered = random_cloud(2000, random);
-  const Cloud labeled = random_cloud(2000, random);
-  Cloud same_places = labeled;
+  const cloud::Cloud filtered = random_cloud(2000, random);
+  const cloud::Cloud labeled = random_cloud(2000, random);
+  cloud::Cloud same_places = labeled;
   same_places.points = filtered.points;
   const PairedIds straight = pair(filtered, same_places);
   const PairedIds mixed = pair(filtered, pick(same_places, shuffled(2000, random)));
@@ -77,7 +79,7 @@ TEST(CloudPair, AnyOrderGivesTheSame) {
 
 TEST(CloudPair, PointsThatTheLabelledCloudLacksAreNull) {
   Random random(2);
-  const Cloud filtered = random_cloud(1000, random);
+  const cloud::Cloud filtered = random_cloud(1000, random);
   std::vector<std::size_t> kept = shuffled(1000, random);
   kept.resize(400);
   const PairedIds pairs = pair(filtered, pick(filtered, kept));
@@ -92,39 +94,39 @@ TEST(CloudPair, PointsThatTheLabelledCloudLacksAreNull) {
 
 TEST(CloudPair, TextFormatsRoundPositions) {
   Random random(3);
-  const Cloud filtered = random_cloud(3000, random);
-  Cloud labeled = pick(filtered, shuffled(3000, random));
-  for (Point& p : labeled.points) p = (p * 1e5F).array().round() / 1e5F;
+  const cloud::Cloud filtered = random_cloud(3000, random);
+  cloud::Cloud labeled = pick(filtered, shuffled(3000, random));
+  for (cloud::Point& p : labeled.points) p = (p * 1e5F).array().round() / 1e5F;
   const PairedIds pairs = pair(filtered, labeled);
   EXPECT_EQ(pairs.predicted, filtered.labels);
   EXPECT_EQ(pairs.missing, 0U);
 }
 
 TEST(CloudPair, KthDuplicateBelongsToKthDuplicate) {
-  Cloud filtered;
+  cloud::Cloud filtered;
   filtered.points = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {2, 0, 0}};
   filtered.labels = {1, 1, 2, 3, 4};
-  Cloud labeled;
+  cloud::Cloud labeled;
   labeled.points = {{1, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, 0, 0}, {-0.0F, 0, 0}};
   labeled.labels = {5, 6, 7, 8, 9};
   EXPECT_THAT(pair(filtered, labeled).predicted, ElementsAre(9, 5, 7, 8, 6));
 }
 
 TEST(CloudPair, ManyDuplicatesAreNoQuadraticWork) {
-  Cloud filtered;
-  filtered.points.assign(300000, Point::Zero());
+  cloud::Cloud filtered;
+  filtered.points.assign(300000, cloud::Point::Zero());
   filtered.labels.assign(300000, 1);
   filtered.points.front() = {1, 1, 1};
-  Cloud labeled = filtered;
+  cloud::Cloud labeled = filtered;
   std::reverse(labeled.points.begin(), labeled.points.end());
   EXPECT_EQ(pair(filtered, labeled).missing, 0U);  // a quadratic search would take minutes
 }
 
 TEST(CloudPair, OneDuplicateTooManyIsAStranger) {
-  Cloud filtered;
+  cloud::Cloud filtered;
   filtered.points = {{0, 0, 0}, {1, 0, 0}};
   filtered.labels = {1, 1};
-  Cloud labeled;
+  cloud::Cloud labeled;
   labeled.points = {{1, 0, 0}, {1, 0, 0}};
   labeled.labels = {1, 1};
   EXPECT_THAT(error_of(filtered, labeled), HasSubstr("labeled.pcd: 1 of its 2 points are at no point of filtered.pcd"));
@@ -137,22 +139,22 @@ TEST(CloudPair, CloudsThatDoNotBelongTogether) {
 }
 
 TEST(CloudPair, PixelsWithoutAHitAreLeftOut) {
-  Cloud filtered;
+  cloud::Cloud filtered;
   filtered.points = {{0, 0, 0}, {nan, nan, nan}, {1, 0, 0}};
   filtered.labels = {1, 0, 2};
   filtered.width = 3;
-  Cloud labeled = filtered;
+  cloud::Cloud labeled = filtered;
   labeled.labels = {4, 0, 5};
   EXPECT_THAT(pair(filtered, labeled).truth, ElementsAre(1, 2));
   EXPECT_THAT(pair(filtered, labeled).predicted, ElementsAre(4, 5));
 }
 
 TEST(CloudPair, ColoursServeWhereThereAreNoLabels) {
-  Cloud filtered;
+  cloud::Cloud filtered;
   filtered.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
-  filtered.colors = {0xff0000, kNullColor, 0x00ff00};
-  Cloud labeled = filtered;
-  labeled.colors = {kNullColor, 0x111111, 0x222222};
+  filtered.colors = {0xff0000, cloud::kNullColor, 0x00ff00};
+  cloud::Cloud labeled = filtered;
+  labeled.colors = {cloud::kNullColor, 0x111111, 0x222222};
   const PairedIds pairs = pair(filtered, labeled);
   EXPECT_THAT(pairs.truth, ElementsAre(0xff0000, 0x00ff00));
   EXPECT_THAT(pairs.predicted, ElementsAre(kNullId, 0x222222));
@@ -161,10 +163,10 @@ TEST(CloudPair, ColoursServeWhereThereAreNoLabels) {
 }
 
 TEST(CloudPair, LabelsAndColoursThatDisagreeAreAnError) {
-  Cloud filtered;
+  cloud::Cloud filtered;
   filtered.points = {{0, 0, 0}, {1, 0, 0}};
   filtered.labels = {1, 2};
-  Cloud recolored = filtered;  // a program that set colours and passed the ground truth's labels on
+  cloud::Cloud recolored = filtered;  // a program that set colours and passed the ground truth's labels on
   recolored.colors = {0x101010, 0x101010};
   EXPECT_THAT(error_of(filtered, recolored),
               AllOf(HasSubstr("labeled.pcd: its labels and its colours"), HasSubstr("--field")));
@@ -173,20 +175,20 @@ TEST(CloudPair, LabelsAndColoursThatDisagreeAreAnError) {
 }
 
 TEST(CloudPair, CloudsWithoutLabelsAndColours) {
-  Cloud bare;
+  cloud::Cloud bare;
   bare.points = {{0, 0, 0}};
-  Cloud labelled = bare;
+  cloud::Cloud labelled = bare;
   labelled.labels = {1};
   EXPECT_THAT(error_of(bare, labelled), HasSubstr("filtered.pcd: has neither a label field nor colours"));
   EXPECT_THAT(error_of(labelled, bare), HasSubstr("labeled.pcd: has neither"));
-  EXPECT_THAT(error_of(Cloud{}, labelled), HasSubstr("filtered.pcd: has no point"));
+  EXPECT_THAT(error_of(cloud::Cloud{}, labelled), HasSubstr("filtered.pcd: has no point"));
 }
 
 TEST(CloudPair, AnEmptyLabelledCloudLabelsNothing) {
-  Cloud filtered;
+  cloud::Cloud filtered;
   filtered.points = {{0, 0, 0}};
   filtered.labels = {1};
-  EXPECT_EQ(pair(filtered, Cloud{}).missing, 1U);
+  EXPECT_EQ(pair(filtered, cloud::Cloud{}).missing, 1U);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kRadius = 0.0125;
 
-PlacedTube tube_between(const Vec3& start, const Vec3& end) {
-  PlacedTube placed;
+scene::PlacedTube tube_between(const Vec3& start, const Vec3& end) {
+  scene::PlacedTube placed;
   placed.tube.radius = kRadius;
   placed.tube.nodes = {start, end};
   placed.tube.cylinders = {{0, 1, 0}};
@@ -18,7 +18,7 @@ PlacedTube tube_between(const Vec3& start, const Vec3& end) {
 }
 
 TEST(PileStatistics, TwoCrossingTubes) {
-  Scene scene;
+  scene::Scene scene;
   scene.tubes = {tube_between({-0.2, 0, kRadius}, {0.2, 0, kRadius}),
                  tube_between({0, -0.2, 3 * kRadius - 0.0003}, {0, 0.2, 3 * kRadius - 0.0003})};
   const PileStatistics s = pile_statistics(scene, {1000, 3000});
@@ -32,7 +32,7 @@ TEST(PileStatistics, TwoCrossingTubes) {
 }
 
 TEST(PileStatistics, ALeaningTubeStandsOnItsRim) {
-  Scene scene;
+  scene::Scene scene;
   const double tilt = radians(30.0);
   const Vec3 low(0, 0, kRadius * std::cos(tilt));
   scene.tubes = {tube_between(low, low + 0.3 * Vec3(std::cos(tilt), 0, std::sin(tilt)))};

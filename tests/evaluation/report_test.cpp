@@ -2,10 +2,10 @@
 
 #include <regex>
 
-#include "evaluation/synthetic_results.hpp"
+#include "support/synthetic_results.hpp"
 #include "tubebin/evaluation/html_report.hpp"
 #include "tubebin/evaluation/paper_figures.hpp"
-#include "tubebin/evaluation/results_folder.hpp"
+#include "tubebin/results/results_folder.hpp"
 
 namespace tubebin {
 namespace {
@@ -20,7 +20,7 @@ using testing::TemporaryFolder;
 Evaluation synthetic_evaluation(const testing::SyntheticSweep& sweep) {
   TemporaryFolder folder;
   testing::write_synthetic_sweep(folder.path(), sweep);
-  return read_results({(folder.path() / "results").string()}, {});
+  return results::read_results({(folder.path() / "results").string()}, {});
 }
 
 /// The paper's own conditions, with few cases.

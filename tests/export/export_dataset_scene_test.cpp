@@ -4,9 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "dataset/program.hpp"
+#include "support/program.hpp"
 
 namespace tubebin::testing {
+
+using namespace exports;
 namespace {
 
 using ::testing::HasSubstr;

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "evaluation/result_files.hpp"
+#include "results/result_files.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/yaml.hpp"
@@ -27,7 +27,7 @@ inline void require(bool condition, const char* what) {
 }
 
 /// A NaN is as good as any other.
-inline bool same_points(const std::vector<Point>& a, const std::vector<Point>& b) {
+inline bool same_points(const std::vector<cloud::Point>& a, const std::vector<cloud::Point>& b) {
   if (a.size() != b.size()) return false;
   for (std::size_t i = 0; i < a.size(); ++i)
     for (int axis = 0; axis < 3; ++axis)
@@ -36,15 +36,15 @@ inline bool same_points(const std::vector<Point>& a, const std::vector<Point>& b
 }
 
 inline void cloud(std::string_view bytes) {
-  Cloud cloud;
+  cloud::Cloud cloud;
   try {
-    cloud = parse_cloud(bytes, "fuzz");
+    cloud = cloud::parse_cloud(bytes, "fuzz");
   } catch (const IoError&) {
     return;
   }
-  for (const CloudFormat format :
-       {CloudFormat::pcd_binary, CloudFormat::pcd_compressed, CloudFormat::pcd_ascii, CloudFormat::ply_binary}) {
-    const Cloud back = parse_cloud(format_cloud(cloud, format), "round trip");
+  for (const cloud::CloudFormat format : {cloud::CloudFormat::pcd_binary, cloud::CloudFormat::pcd_compressed,
+                                          cloud::CloudFormat::pcd_ascii, cloud::CloudFormat::ply_binary}) {
+    const cloud::Cloud back = cloud::parse_cloud(cloud::format_cloud(cloud, format), "round trip");
     require(same_points(back.points, cloud.points), "points read back");
     require(back.colors == cloud.colors && back.labels == cloud.labels, "colours and labels read back");
     require(back.width == cloud.width && back.height == cloud.height, "rows and columns read back");
@@ -52,54 +52,54 @@ inline void cloud(std::string_view bytes) {
 }
 
 inline void tubes_txt(std::string_view bytes) {
-  std::vector<PlacedTube> tubes;
+  std::vector<scene::PlacedTube> tubes;
   try {
-    tubes = parse_tubes_txt(bytes, "fuzz");
+    tubes = scene::parse_tubes_txt(bytes, "fuzz");
   } catch (const IoError&) {
     return;
   }
-  const std::string text = format_tubes_txt(tubes);
-  require(format_tubes_txt(parse_tubes_txt(text, "round trip")) == text, "tubes read back");
+  const std::string text = scene::format_tubes_txt(tubes);
+  require(scene::format_tubes_txt(scene::parse_tubes_txt(text, "round trip")) == text, "tubes read back");
 }
 
 inline void scene_json(std::string_view bytes) {
-  SceneRecord record;
+  scene::SceneRecord record;
   try {
-    record = parse_scene_json(bytes, "fuzz");
+    record = scene::parse_scene_json(bytes, "fuzz");
   } catch (const IoError&) {
     return;
   }
-  const std::string text = format_scene_json(record);
-  require(format_scene_json(parse_scene_json(text, "round trip")) == text, "the scene reads back");
+  const std::string text = scene::format_scene_json(record);
+  require(scene::format_scene_json(scene::parse_scene_json(text, "round trip")) == text, "the scene reads back");
 }
 
 inline void result_index(std::string_view bytes) {
   try {
-    parse_results_index(bytes, "fuzz");
+    results::parse_results_index(bytes, "fuzz");
   } catch (const IoError&) {
   }
 }
 
 inline void failures(std::string_view bytes) {
   try {
-    parse_failures(bytes, "fuzz");
+    results::parse_failures(bytes, "fuzz");
   } catch (const IoError&) {
   }
 }
 
 /// Two tubes that cross, as ground truth.
-inline const SceneTruth& two_tubes() {
-  static const SceneTruth truth = [] {
-    PlacedTube along, across;
+inline const evaluation::SceneTruth& two_tubes() {
+  static const evaluation::SceneTruth truth = [] {
+    scene::PlacedTube along, across;
     along.tube = {.radius = 0.01,
                   .nodes = {{-0.1, 0.0, 0.0}, {0.1, 0.0, 0.0}},
                   .cylinders = {{.node_a = 0, .node_b = 1, .order = 0}}};
     across.tube = {.radius = 0.01,
                    .nodes = {{0.0, -0.1, 0.03}, {0.0, 0.1, 0.03}},
                    .cylinders = {{.node_a = 0, .node_b = 1, .order = 0}}};
-    Scene scene;
+    scene::Scene scene;
     scene.tubes = {along, across};
-    return SceneTruth(scene);
+    return evaluation::SceneTruth(scene);
   }();
   return truth;
 }
@@ -110,24 +110,25 @@ inline bool is_share(double value) { return value >= 0.0 && value <= 1.0; }
 inline void run(std::string_view bytes) {
   constexpr std::string_view kDivider = "\n---\n";
   const std::size_t divider = bytes.find(kDivider);
-  RunScore score;
+  evaluation::RunScore score;
   try {
-    const RunCounts counts = parse_run_counts(bytes.substr(0, divider), "fuzz result");
-    std::vector<Centerline> model;
+    const results::RunCounts counts = results::parse_run_counts(bytes.substr(0, divider), "fuzz result");
+    std::vector<evaluation::Centerline> model;
     if (divider != std::string_view::npos)
-      model = parse_model_centerlines(bytes.substr(divider + kDivider.size()), "fuzz model");
-    score = score_run({}, counts.contingency, match_segments(counts.contingency), &two_tubes(), model);
+      model = results::parse_model_centerlines(bytes.substr(divider + kDivider.size()), "fuzz model");
+    score = evaluation::score_run({}, counts.contingency, evaluation::match_segments(counts.contingency), &two_tubes(),
+                                  model);
   } catch (const IoError&) {
     return;
   }
   require(is_share(score.micro_recall), "micro-recall is a share");
-  for (const TubeScore& tube : score.scores.tubes)
+  for (const evaluation::TubeScore& tube : score.scores.tubes)
     require(is_share(tube.recall()) && is_share(tube.precision()) && is_share(tube.iou()), "measures are shares");
 }
 
 inline void times(std::string_view bytes) {
   try {
-    require(parse_modeling_seconds(bytes, "fuzz") >= 0.0, "a time is not negative");
+    require(results::parse_modeling_seconds(bytes, "fuzz") >= 0.0, "a time is not negative");
   } catch (const IoError&) {
   }
 }
@@ -138,9 +139,9 @@ struct Options {
   bool flag = false;
   std::string text = "text";
   std::vector<int> integers = {1};
-  TubeOptions tube;
-  Bin bin;
-  Scanner scanner;
+  tube::TubeOptions tube;
+  scene::Bin bin;
+  scene::Scanner scanner;
 };
 
 inline void describe_all(Fields& fields, Options& options) {

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "built_scene.hpp"
-#include "tubebin/modeling/branch_links.hpp"
-#include "tubebin/modeling/branch_splitting.hpp"
-#include "tubebin/modeling/centerline_segmentation.hpp"
+#include "modeling/fitting/branch_splitting.hpp"
+#include "modeling/fitting/centerline_segmentation.hpp"
+#include "modeling/joining/branch_links.hpp"
 #include "tubebin/modeling/filtering.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 
@@ -14,8 +14,9 @@ namespace tubebin {
 namespace {
 
 /// A trunk of 0.36 m that lies along x at `y`, with two branches of 0.12 m in the plane of the floor.
-PlacedTube two_branches(double y) {
-  PlacedTube tube = tube_along({{-0.18, y, kRadius}, {-0.06, y, kRadius}, {0.06, y, kRadius}, {0.18, y, kRadius}});
+scene::PlacedTube two_branches(double y) {
+  scene::PlacedTube tube =
+      tube_along({{-0.18, y, kRadius}, {-0.06, y, kRadius}, {0.06, y, kRadius}, {0.18, y, kRadius}});
   for (const double x : {-0.06, 0.06}) {
     tube.tube.nodes.push_back({x + 0.06, y + 0.10, kRadius});
     tube.tube.cylinders.push_back({x < 0.0 ? 1 : 2, static_cast<int>(tube.tube.nodes.size()) - 1, 0});
@@ -24,8 +25,8 @@ PlacedTube two_branches(double y) {
 }
 
 TEST(Branches, OneTubeIsFoundForEachTree) {
-  const Scene scene = scene_of({two_branches(-0.12), two_branches(0.04)});
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = scene_of({two_branches(-0.12), two_branches(0.04)});
+  const cloud::Cloud cloud = scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   ASSERT_EQ(result.tubes.size(), 2u);
   EXPECT_GE(micro_recall_of(result, cloud), 0.995);
@@ -36,9 +37,9 @@ TEST(Branches, OneTubeIsFoundForEachTree) {
 }
 
 TEST(Branches, ATrunkThatAnotherTubeHidesStillJoinsItsBranches) {
-  const Scene scene = scene_of({two_branches(0.0), two_branches(-0.15),
-                                tube_along({{-0.08, -0.02, 0.05}, {-0.04, 0.03, 0.05}, {0.12, 0.03, 0.05}})});
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = scene_of({two_branches(0.0), two_branches(-0.15),
+                                       tube_along({{-0.08, -0.02, 0.05}, {-0.04, 0.03, 0.05}, {0.12, 0.03, 0.05}})});
+  const cloud::Cloud cloud = scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   EXPECT_EQ(result.tubes.size(), 3u);
   EXPECT_GE(micro_recall_of(result, cloud), 0.99);
@@ -46,9 +47,9 @@ TEST(Branches, ATrunkThatAnotherTubeHidesStillJoinsItsBranches) {
 
 TEST(Branches, SegmentsOfTreesAreTakenApartAndThoseOfChainsAreNot) {
   for (const bool is_tree : {true, false}) {
-    const Scene scene = scene_of(
+    const scene::Scene scene = scene_of(
         {is_tree ? two_branches(0.0) : tube_along({{-0.1, 0, kRadius}, {0, 0, kRadius}, {0.1, 0.05, kRadius}})});
-    const Cloud cloud = scan(scene).cloud;
+    const cloud::Cloud cloud = scan(scene).cloud;
     const ModelingInput input = input_of(cloud, scene.bin);
     FilteredCloud filtered = filter(input, view_of(input), {}, 1);
     add_normals(filtered, view_of(input), kRadius);
@@ -64,9 +65,9 @@ TEST(Branches, SegmentsOfTreesAreTakenApartAndThoseOfChainsAreNot) {
 
 TEST(Branches, TubesThatHangTogetherByTheirEndsAreTakenApart) {
   const double apart = 2.02 * kRadius;
-  const Scene scene = scene_of(
+  const scene::Scene scene = scene_of(
       {tube_along({{-0.10, 0.0, 0.02}, {-0.05, 0.0, 0.15}}), tube_along({{-0.10, apart, 0.02}, {-0.05, apart, 0.15}})});
-  const Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan(scene).cloud;
   const ModelingInput input = input_of(cloud, scene.bin);
   FilteredCloud filtered = filter(input, view_of(input), {}, 1);
   add_normals(filtered, view_of(input), kRadius);
@@ -87,9 +88,9 @@ TEST(Branches, StartOnASideButNotAtAnEnd) {
 }
 
 TEST(Branches, AreFoundUnderATubeThatHidesWhereTheyStart) {
-  const Scene scene = scene_of({two_branches(-0.17), two_branches(-0.04), two_branches(0.08),
-                                tube_along({{-0.20, -0.02, 0.05}, {0.20, -0.02, 0.05}})});
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = scene_of({two_branches(-0.17), two_branches(-0.04), two_branches(0.08),
+                                       tube_along({{-0.20, -0.02, 0.05}, {0.20, -0.02, 0.05}})});
+  const cloud::Cloud cloud = scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   EXPECT_EQ(result.tubes.size(), 4u);
   EXPECT_GE(micro_recall_of(result, cloud), 0.99);
@@ -100,9 +101,9 @@ class PublishedSetC : public ::testing::TestWithParam<int> {};
 TEST_P(PublishedSetC, HasATubeForEachTree) {
   const std::string path = PUBLISHED_SCENES_DIR "/C" + std::to_string(GetParam()) + "_1.txt";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs the published scenes in " PUBLISHED_SCENES_DIR;
-  Scene scene = scene_of(read_tubes_txt(path));
+  scene::Scene scene = scene_of(scene::read_tubes_txt(path));
   scene.bin = {.length = 0.80, .width = 0.60, .height = 0.20, .wall_thickness = 0.02};
-  const Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   EXPECT_LE(static_cast<int>(result.tubes.size()), GetParam() + GetParam() / 5);
   EXPECT_GE(micro_recall_of(result, cloud), 0.95);

@@ -13,30 +13,30 @@ namespace tubebin {
 
 constexpr double kRadius = 0.0125;  // metres
 
-inline PlacedTube tube_along(const std::vector<Vec3>& nodes) {
-  Tube tube{.radius = kRadius, .mass = 0.055, .nodes = nodes, .cylinders = {}};
+inline scene::PlacedTube tube_along(const std::vector<Vec3>& nodes) {
+  tube::Tube tube{.radius = kRadius, .mass = 0.055, .nodes = nodes, .cylinders = {}};
   for (int i = 0; i + 1 < static_cast<int>(nodes.size()); ++i) tube.cylinders.push_back({i, i + 1, i});
   return {tube, Pose::Identity()};
 }
 
-inline Scene scene_of(std::vector<PlacedTube> tubes) {
-  Scene scene;
+inline scene::Scene scene_of(std::vector<scene::PlacedTube> tubes) {
+  scene::Scene scene;
   scene.tubes = std::move(tubes);
   return scene;
 }
 
 /// Moves every point along its ray by normal noise of `sigma` metres.
-inline void add_range_noise(Cloud& cloud, double sigma, std::uint64_t seed) {
+inline void add_range_noise(cloud::Cloud& cloud, double sigma, std::uint64_t seed) {
   Random random(seed);
   const Vec3 eye = cloud.world_from_sensor.translation();
-  for (Point& point : cloud.points) {
-    if (!is_finite(point)) continue;
+  for (cloud::Point& point : cloud.points) {
+    if (!cloud::is_finite(point)) continue;
     const Vec3 p = point.cast<double>();
     point = (p + (p - eye).normalized() * sigma * random.normal()).cast<float>();
   }
 }
 
-inline ModelingInput input_of(const Cloud& cloud, const Bin& bin) {
+inline ModelingInput input_of(const cloud::Cloud& cloud, const scene::Bin& bin) {
   return {.points = cloud.points, .world_from_sensor = cloud.world_from_sensor, .bin = bin};
 }
 
@@ -48,7 +48,7 @@ inline ModelingOptions known_radius(ModelingMethod method = ModelingMethod::cent
 }
 
 /// Equation 1 for a result, from the cloud's own labels.
-inline double micro_recall_of(const ModelingResult& result, const Cloud& cloud) {
+inline double micro_recall_of(const ModelingResult& result, const cloud::Cloud& cloud) {
   std::vector<std::vector<std::int64_t>> table(64, std::vector<std::int64_t>(result.tubes.size() + 1, 0));
   for (std::size_t i = 0; i < result.source.size(); ++i) ++table[cloud.labels[result.source[i]]][result.labels[i]];
   // Few tubes: the best matching by trying all assignments of tubes to rows, one row after the other.
@@ -70,7 +70,7 @@ inline double micro_recall_of(const ModelingResult& result, const Cloud& cloud) 
 }
 
 /// Farthest that any node of the model lies from the tube's centreline, bridges left out, metres.
-inline double farthest_node(const TubeModel& model, const PlacedTube& tube) {
+inline double farthest_node(const TubeModel& model, const scene::PlacedTube& tube) {
   std::vector<Vec3> nodes;
   for (int i = 0; i < static_cast<int>(tube.tube.nodes.size()); ++i) nodes.push_back(tube.node_in_world(i));
   double farthest = 0.0;

@@ -1,4 +1,4 @@
-#include "tubebin/modeling/flat_ends.hpp"
+#include "modeling/fitting/flat_ends.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,8 @@
 #include "tubebin/core/random.hpp"
 
 namespace tubebin::testing {
+
+using namespace modeling;
 namespace {
 
 /// Points all over the flat end at the origin that faces `outward`, and on `depth` metres of the half of the side that

@@ -9,24 +9,24 @@
 #include <numbers>
 
 #include "modeling/built_scene.hpp"
+#include "modeling/fitting/end_growth.hpp"
+#include "modeling/fitting/surface_fitting.hpp"
+#include "modeling/fitting/vote_voxels.hpp"
+#include "modeling/input/normals.hpp"
+#include "modeling/input/view_grid.hpp"
 #include "tubebin/core/random.hpp"
-#include "tubebin/modeling/end_growth.hpp"
 #include "tubebin/modeling/filtering.hpp"
-#include "tubebin/modeling/normals.hpp"
-#include "tubebin/modeling/surface_fitting.hpp"
 #include "tubebin/modeling/tube_model.hpp"
-#include "tubebin/modeling/view_grid.hpp"
-#include "tubebin/modeling/vote_voxels.hpp"
 
 namespace tubebin {
 namespace {
 
 /// A scanner a metre above the origin that looks down.
-ViewProjection view_from_above() { return {make_pose(Quat(0, 1, 0, 0), {0, 0, 1}), Point::Zero()}; }
+ViewProjection view_from_above() { return {make_pose(Quat(0, 1, 0, 0), {0, 0, 1}), cloud::Point::Zero()}; }
 
 /// The upper side of a tube of kRadius along x, and its normals.
 struct HalfTube {
-  std::vector<Point> points, normals;
+  std::vector<cloud::Point> points, normals;
 
   explicit HalfTube(std::size_t count) {
     Random random(7);
@@ -40,10 +40,10 @@ struct HalfTube {
 };
 
 /// The plane's normal through all points within `radius` of points[i], by an eigensolver.
-Point plane_through_neighbors(const std::vector<Point>& points, std::size_t i, double radius) {
+cloud::Point plane_through_neighbors(const std::vector<cloud::Point>& points, std::size_t i, double radius) {
   Vec3 mean = Vec3::Zero();
   std::vector<Vec3> near;
-  for (const Point& point : points)
+  for (const cloud::Point& point : points)
     if ((point - points[i]).norm() <= static_cast<float>(radius)) near.push_back(point.cast<double>());
   for (const Vec3& point : near) mean += point / static_cast<double>(near.size());
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -55,7 +55,7 @@ Point plane_through_neighbors(const std::vector<Point>& points, std::size_t i, d
 TEST(ViewProjection, OfManyPointsIsThatOfEach) {
   const ViewProjection projection = view_from_above();
   for (const std::size_t count : {0, 1, 7, 8, 9, 100}) {
-    const std::vector<Point> points = HalfTube(count).points;
+    const std::vector<cloud::Point> points = HalfTube(count).points;
     const ViewProjection::Images images = projection.images(points);
     ASSERT_EQ(images.size(), count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -71,9 +71,9 @@ TEST(ViewProjection, OfManyPointsIsThatOfEach) {
 TEST(RangeImage, LeavesOutWhatIsNotFinite) {
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
   // Each would lie right in front of the scanner, were its other coordinates believed.
-  const std::vector<Point> points = {{0.0f, 0.0f, 0.0f},   {kNaN, 0.0f, 0.9f},      {0.0f, kNaN, 0.9f},
-                                     {0.0f, 0.0f, kNaN},   {0.0f, kInfinity, 0.9f}, {0.0f, 0.0f, -kInfinity},
-                                     {0.01f, 0.01f, 0.01f}};
+  const std::vector<cloud::Point> points = {{0.0f, 0.0f, 0.0f},   {kNaN, 0.0f, 0.9f},      {0.0f, kNaN, 0.9f},
+                                            {0.0f, 0.0f, kNaN},   {0.0f, kInfinity, 0.9f}, {0.0f, 0.0f, -kInfinity},
+                                            {0.01f, 0.01f, 0.01f}};
   const RangeImage image(view_from_above(), points, 0.002f);
   EXPECT_EQ(image.evidence({0.0f, 0.0f, 0.0f}, 0.001f), RangeImage::Evidence::surface);
   EXPECT_EQ(image.evidence({0.0f, 0.0f, -0.1f}, 0.001f), RangeImage::Evidence::hidden);
@@ -85,7 +85,7 @@ TEST(RangeImage, LeavesOutWhatIsNotFinite) {
 TEST(Normals, AreThoseOfAnEigensolver) {
   constexpr double kReach = 0.004;
   const HalfTube tube(3000);
-  const std::vector<Point> normals = estimate_normals(view_from_above(), tube.points, kReach);
+  const std::vector<cloud::Point> normals = estimate_normals(view_from_above(), tube.points, kReach);
   for (std::size_t i = 0; i < tube.points.size(); i += 10) {
     ASSERT_NEAR(normals[i].norm(), 1.0f, 1e-5f);
     EXPECT_GT(normals[i].dot(plane_through_neighbors(tube.points, i, kReach)), 0.9995f);
@@ -94,16 +94,16 @@ TEST(Normals, AreThoseOfAnEigensolver) {
 }
 
 TEST(Normals, AreZeroWhereNeighborsSpanNoPlane) {
-  std::vector<Point> points = {{0.0f, 0.0f, 0.0f}, {0.001f, 0.0f, 0.0f}, {0.0f, 0.001f, 0.0f}};
+  std::vector<cloud::Point> points = {{0.0f, 0.0f, 0.0f}, {0.001f, 0.0f, 0.0f}, {0.0f, 0.001f, 0.0f}};
   for (int i = 0; i < 20; ++i) points.emplace_back(0.1f + 0.0005f * static_cast<float>(i), 0.1f, 0.0f);
-  for (const Point& normal : estimate_normals(view_from_above(), points, 0.004)) EXPECT_TRUE(normal.isZero());
+  for (const cloud::Point& normal : estimate_normals(view_from_above(), points, 0.004)) EXPECT_TRUE(normal.isZero());
   EXPECT_TRUE(estimate_normals(view_from_above(), {}, 0.004).empty());
 }
 
 TEST(Normals, OfAPartOfThePointsAreThoseThatAllOfThemGive) {
   const HalfTube tube(3000);
-  const std::vector<Point> all = estimate_normals(view_from_above(), tube.points, 0.004);
-  const std::vector<Point> part = estimate_normals(view_from_above(), tube.points, 0.004, 3);
+  const std::vector<cloud::Point> all = estimate_normals(view_from_above(), tube.points, 0.004);
+  const std::vector<cloud::Point> part = estimate_normals(view_from_above(), tube.points, 0.004, 3);
   ASSERT_EQ(part.size(), (all.size() + 2) / 3);
   for (std::size_t i = 0; i < part.size(); ++i) EXPECT_LT((part[i] - all[3 * i]).norm(), 1e-5f);
 }
@@ -125,32 +125,32 @@ TEST(Thinned, LeavesPointsAboutAsFarApartAsAsked) {
 
 TEST(Normals, CountTheNeighborsOfEachPoint) {
   constexpr double kReach = 0.003;
-  const std::vector<Point> points = HalfTube(500).points;
+  const std::vector<cloud::Point> points = HalfTube(500).points;
   const std::vector<int> counts = count_neighbors(view_from_above(), points, kReach);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto within = [&](const Point& p) { return (p - points[i]).norm() <= static_cast<float>(kReach); };
+    const auto within = [&](const cloud::Point& p) { return (p - points[i]).norm() <= static_cast<float>(kReach); };
     EXPECT_EQ(counts[i], std::count_if(points.begin(), points.end(), within));
   }
 }
 
 TEST(VoteVoxels, HoldTheMeansOfTheirVotes) {
   constexpr float kVoxel = 0.004f;
-  const std::vector<Point> votes = HalfTube(2000).points;
+  const std::vector<cloud::Point> votes = HalfTube(2000).points;
   const VoteVoxels voxels(votes, kVoxel, 3);
-  std::map<std::array<int, 3>, std::vector<Point>> cells;
-  const auto cell_of = [&](const Point& vote) {
+  std::map<std::array<int, 3>, std::vector<cloud::Point>> cells;
+  const auto cell_of = [&](const cloud::Point& vote) {
     const Eigen::Array3f cell = (vote.array() * (1.0f / kVoxel)).floor();
     return std::array{static_cast<int>(cell.x()), static_cast<int>(cell.y()), static_cast<int>(cell.z())};
   };
-  for (const Point& vote : votes) cells[cell_of(vote)].push_back(vote);
+  for (const cloud::Point& vote : votes) cells[cell_of(vote)].push_back(vote);
   for (std::size_t i = 0; i < votes.size(); ++i) {
-    const std::vector<Point>& own = cells[cell_of(votes[i])];
+    const std::vector<cloud::Point>& own = cells[cell_of(votes[i])];
     if (own.size() < 3) {
       EXPECT_EQ(voxels.voxel_of(i), VoteVoxels::kNone);
       continue;
     }
-    Point mean = Point::Zero();
-    for (const Point& vote : own) mean += vote / static_cast<float>(own.size());
+    cloud::Point mean = cloud::Point::Zero();
+    for (const cloud::Point& vote : own) mean += vote / static_cast<float>(own.size());
     EXPECT_EQ(voxels.count(voxels.voxel_of(i)), own.size());
     EXPECT_LT((voxels.mean(voxels.voxel_of(i)) - mean).norm(), 1e-7f);
   }

@@ -1,4 +1,4 @@
-#include "tubebin/modeling/piece_cleaning.hpp"
+#include "modeling/fitting/piece_cleaning.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 constexpr double kRowSpacing = 0.0015;  // metres
 
 /// A cylinder along x at height z; its points cover the angles from `first` to `last` (radians from y) about the axis.
-TubePiece strip(double z, double x_from, double x_to, double first, double last, std::vector<Point>& points) {
+TubePiece strip(double z, double x_from, double x_to, double first, double last, std::vector<cloud::Point>& points) {
   TubePiece piece{.nodes = {{x_from, 0, z}, {x_to, 0, z}}, .radius = kRadius, .points = {}};
   for (double x = x_from; x <= x_to; x += kRowSpacing)
     for (double angle = first; angle <= last; angle += kRowSpacing / kRadius) {
@@ -25,7 +25,7 @@ TubePiece strip(double z, double x_from, double x_to, double first, double last,
 
 TEST(PieceCleaning, DropsWhatAnotherPieceOfTheSameTubeExplains) {
   constexpr double kPi = std::numbers::pi;
-  std::vector<Point> points;
+  std::vector<cloud::Point> points;
   const TubePiece tube = strip(0.02, 0.0, 0.3, 0.3, kPi, points);
   const TubePiece again = strip(0.02, 0.1, 0.2, 0.0, 0.3, points);
   const TubePiece other = strip(0.2, 0.1, 0.2, 0.0, 0.3, points);

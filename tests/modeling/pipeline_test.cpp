@@ -12,31 +12,31 @@ namespace {
 
 constexpr double kR = kRadius;
 
-PlacedTube straight(const Vec3& from, const Vec3& to) {
+scene::PlacedTube straight(const Vec3& from, const Vec3& to) {
   std::vector<Vec3> nodes;
   for (int i = 0; i <= 5; ++i) nodes.push_back(from + (to - from) * i / 5.0);
   return tube_along(nodes);
 }
 
-Scene crossing() {
+scene::Scene crossing() {
   return scene_of({straight({-0.2, 0, kR}, {0.2, 0.02, kR}), straight({0.02, -0.15, 3 * kR}, {-0.02, 0.15, 3 * kR})});
 }
 
-Scene touching_side_by_side() {
+scene::Scene touching_side_by_side() {
   return scene_of({straight({-0.2, -kR, kR}, {0.2, -kR, kR}), straight({-0.2, kR, kR}, {0.2, kR, kR})});
 }
 
-Scene one_over_three() {
+scene::Scene one_over_three() {
   return scene_of({straight({-0.2, 0, 3 * kR}, {0.2, 0, 3 * kR}), straight({-0.12, -0.15, kR}, {-0.12, 0.15, kR}),
                    straight({0.0, -0.15, kR}, {0.0, 0.15, kR}), straight({0.12, -0.15, kR}, {0.12, 0.15, kR})});
 }
 
-Scene end_on_a_tube() {
+scene::Scene end_on_a_tube() {
   // The second one's end touches the first one's side.
   return scene_of({straight({-0.2, 0, kR}, {0.2, 0, kR}), straight({0.0, kR + 0.0002, kR}, {0.0, 0.15, kR})});
 }
 
-Scene bend_at_the_limit() {
+scene::Scene bend_at_the_limit() {
   const double c = std::cos(radians(45.0));
   return scene_of(
       {tube_along({Vec3(-0.2, -0.05, kR), Vec3(-0.05, -0.05, kR), Vec3(-0.05 + 0.1 * c, -0.05 + 0.1 * c, kR),
@@ -44,20 +44,21 @@ Scene bend_at_the_limit() {
 }
 
 /// The upper tube hides the middle of the lower one.
-Scene in_two_pieces() {
+scene::Scene in_two_pieces() {
   return scene_of({straight({-0.22, 0, kR}, {0.22, 0, kR}), straight({0.0, -0.15, 3 * kR}, {0.0, 0.15, 3 * kR})});
 }
 
 /// The labels renamed 1, 2, ... in order of their first point.
-std::vector<Label> canonical(std::vector<Label> labels) {
-  std::map<Label, Label> names = {{0, 0}};
-  for (Label& label : labels) label = names.try_emplace(label, static_cast<Label>(names.size())).first->second;
+std::vector<cloud::Label> canonical(std::vector<cloud::Label> labels) {
+  std::map<cloud::Label, cloud::Label> names = {{0, 0}};
+  for (cloud::Label& label : labels)
+    label = names.try_emplace(label, static_cast<cloud::Label>(names.size())).first->second;
   return labels;
 }
 
 struct Expectation {
   const char* name;
-  Scene (*build)();
+  scene::Scene (*build)();
   double centerline_noise_free;  ///< micro-recall
   double region_growing;
 };
@@ -67,21 +68,21 @@ std::ostream& operator<<(std::ostream& out, const Expectation& e) { return out <
 class BuiltScene : public ::testing::TestWithParam<Expectation> {};
 
 TEST_P(BuiltScene, TheCenterlineMethodFindsEachTube) {
-  const Scene scene = GetParam().build();
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = GetParam().build();
+  const cloud::Cloud cloud = scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   ASSERT_EQ(result.tubes.size(), scene.tubes.size());
   EXPECT_GE(micro_recall_of(result, cloud), GetParam().centerline_noise_free);
   for (const TubeModel& model : result.tubes) {
     double nearest = 1.0;
-    for (const PlacedTube& tube : scene.tubes) nearest = std::min(nearest, farthest_node(model, tube));
+    for (const scene::PlacedTube& tube : scene.tubes) nearest = std::min(nearest, farthest_node(model, tube));
     EXPECT_LT(nearest, 0.5 * kR);  // ends beside another tube may reach a little beyond the true one
   }
 }
 
 TEST_P(BuiltScene, NoiseCostsLittle) {
-  const Scene scene = GetParam().build();
-  Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = GetParam().build();
+  cloud::Cloud cloud = scan(scene).cloud;
   add_range_noise(cloud, 0.0003, 5);
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   EXPECT_EQ(result.tubes.size(), scene.tubes.size());
@@ -89,8 +90,8 @@ TEST_P(BuiltScene, NoiseCostsLittle) {
 }
 
 TEST_P(BuiltScene, RegionGrowingLabelsMostPoints) {
-  const Scene scene = GetParam().build();
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = GetParam().build();
+  const cloud::Cloud cloud = scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius(ModelingMethod::region_growing));
   EXPECT_GE(micro_recall_of(result, cloud), GetParam().region_growing);
 }
@@ -105,8 +106,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, BuiltScene,
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST(Pipeline, BridgesWhatAnotherTubeHides) {
-  const Scene scene = in_two_pieces();
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = in_two_pieces();
+  const cloud::Cloud cloud = scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   ASSERT_EQ(result.tubes.size(), 2u);
   int bridged = 0;
@@ -121,14 +122,14 @@ TEST(Pipeline, BridgesWhatAnotherTubeHides) {
 
 TEST(Pipeline, ASteepTubeOfFewPointsStaysOne) {
   // Rows of points lie far apart along it, and some of 60 samples give them gaps.
-  const Scene scene = scene_of({tube_along({{-0.05, -0.1154, 0.2},
-                                            {-0.05, -0.05, 0.16},
-                                            {0.004, -0.016, 0.0336},
-                                            {0.031, 0.008, 0.0157},
-                                            {0.054, 0.034, 0.0125},
-                                            {0.091, 0.074, 0.0378},
-                                            {0.132, 0.076, 0.045}})});
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = scene_of({tube_along({{-0.05, -0.1154, 0.2},
+                                                   {-0.05, -0.05, 0.16},
+                                                   {0.004, -0.016, 0.0336},
+                                                   {0.031, 0.008, 0.0157},
+                                                   {0.054, 0.034, 0.0125},
+                                                   {0.091, 0.074, 0.0378},
+                                                   {0.132, 0.076, 0.045}})});
+  const cloud::Cloud cloud = scan(scene).cloud;
   ModelingOptions options = known_radius();
   options.filtering.ratio = 0.3;
   for (options.seed = 1; options.seed <= 60; ++options.seed)
@@ -136,16 +137,16 @@ TEST(Pipeline, ASteepTubeOfFewPointsStaysOne) {
 }
 
 TEST(Pipeline, EstimatesTheRadiusThatNobodyStates) {
-  const Scene scene = one_over_three();
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = one_over_three();
+  const cloud::Cloud cloud = scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), ModelingOptions{});
   EXPECT_NEAR(result.radius, kR, 0.02 * kR);
   EXPECT_EQ(result.tubes.size(), 4u);
 }
 
 TEST(Pipeline, KeepsTheStatedShareOfThePoints) {
-  const Scene scene = crossing();
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = crossing();
+  const cloud::Cloud cloud = scan(scene).cloud;
   ModelingOptions options = known_radius();
   const std::size_t all = model_tubes(input_of(cloud, scene.bin), options).source.size();
   options.filtering.ratio = 0.3;
@@ -155,8 +156,8 @@ TEST(Pipeline, KeepsTheStatedShareOfThePoints) {
 }
 
 TEST(Pipeline, TheSeedGivesTheSameResultAgain) {
-  const Scene scene = one_over_three();
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = one_over_three();
+  const cloud::Cloud cloud = scan(scene).cloud;
   for (const ModelingMethod method : {ModelingMethod::centerline, ModelingMethod::region_growing}) {
     ModelingOptions options = known_radius(method);
     options.filtering.ratio = 0.5;
@@ -168,20 +169,20 @@ TEST(Pipeline, TheSeedGivesTheSameResultAgain) {
 }
 
 TEST(Pipeline, TheOrderOfThePointsChangesNoLabel) {
-  const Scene scene = one_over_three();
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = one_over_three();
+  const cloud::Cloud cloud = scan(scene).cloud;
   std::vector<std::size_t> order(cloud.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   Random random(8);
   for (std::size_t i = order.size() - 1; i > 0; --i)
     std::swap(order[i], order[static_cast<std::size_t>(random.integer(0, static_cast<int>(i)))]);
-  Cloud shuffled = cloud;
+  cloud::Cloud shuffled = cloud;
   for (std::size_t i = 0; i < order.size(); ++i) shuffled.points[i] = cloud.points[order[i]];
 
   const ModelingResult a = model_tubes(input_of(cloud, scene.bin), known_radius());
   const ModelingResult b = model_tubes(input_of(shuffled, scene.bin), known_radius());
-  std::vector<Label> label_a(cloud.size(), 0);
-  std::vector<Label> label_b(cloud.size(), 0);
+  std::vector<cloud::Label> label_a(cloud.size(), 0);
+  std::vector<cloud::Label> label_b(cloud.size(), 0);
   for (std::size_t i = 0; i < a.source.size(); ++i) label_a[a.source[i]] = a.labels[i];
   for (std::size_t i = 0; i < b.source.size(); ++i) label_b[order[b.source[i]]] = b.labels[i];
   // Tubes may be numbered otherwise; the points of one tube stay together.
@@ -189,12 +190,12 @@ TEST(Pipeline, TheOrderOfThePointsChangesNoLabel) {
 }
 
 TEST(Pipeline, ARigidMotionOfTheInputMovesTheResultWithIt) {
-  const Scene scene = one_over_three();
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = one_over_three();
+  const cloud::Cloud cloud = scan(scene).cloud;
   const Pose motion = make_pose(Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized())), {0.4, -0.2, 0.3});
-  Cloud moved = cloud;
-  for (Point& point : moved.points)
-    if (is_finite(point)) point = (motion * point.cast<double>()).cast<float>();
+  cloud::Cloud moved = cloud;
+  for (cloud::Point& point : moved.points)
+    if (cloud::is_finite(point)) point = (motion * point.cast<double>()).cast<float>();
   moved.world_from_sensor = motion * cloud.world_from_sensor;
   ModelingInput input = input_of(moved, scene.bin);
   input.world_from_bin = motion;
@@ -216,8 +217,8 @@ TEST(Pipeline, ARigidMotionOfTheInputMovesTheResultWithIt) {
 }
 
 TEST(Pipeline, FindsTheTubesInABinThatNobodyDescribes) {
-  const Scene scene = one_over_three();
-  const Cloud cloud = scan(scene).cloud;
+  const scene::Scene scene = one_over_three();
+  const cloud::Cloud cloud = scan(scene).cloud;
   ModelingInput input = input_of(cloud, scene.bin);
   input.bin.reset();
   const ModelingResult result = model_tubes(input, known_radius());
@@ -227,19 +228,20 @@ TEST(Pipeline, FindsTheTubesInABinThatNobodyDescribes) {
 
 TEST(Pipeline, MakesNoTubesOfNoise) {
   Random random(9);
-  std::vector<Point> points;
+  std::vector<cloud::Point> points;
   for (int i = 0; i < 5000; ++i)
     points.emplace_back(static_cast<float>(random.uniform(-0.25, 0.25)),
                         static_cast<float>(random.uniform(-0.15, 0.15)),
                         static_cast<float>(random.uniform(0.01, 0.19)));
-  const ModelingInput input{.points = points, .world_from_sensor = Scanner{}.world_from_scanner(), .bin = Bin{}};
+  const ModelingInput input{
+      .points = points, .world_from_sensor = scene::Scanner{}.world_from_scanner(), .bin = scene::Bin{}};
   for (const ModelingMethod method : {ModelingMethod::centerline, ModelingMethod::region_growing})
     EXPECT_TRUE(model_tubes(input, known_radius(method)).tubes.empty());
 }
 
 TEST(Pipeline, ACloudWithoutAPointInTheBinIsRefused) {
-  const std::vector<Point> points = {Point(5, 5, 0.1f), Point(6, 5, 0.1f)};
-  const ModelingInput input{.points = points, .world_from_sensor = Pose::Identity(), .bin = Bin{}};
+  const std::vector<cloud::Point> points = {cloud::Point(5, 5, 0.1f), cloud::Point(6, 5, 0.1f)};
+  const ModelingInput input{.points = points, .world_from_sensor = Pose::Identity(), .bin = scene::Bin{}};
   EXPECT_THROW(model_tubes(input, known_radius()), IoError);
 }
 

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <set>
 
+#include "modeling/joining/path_cover.hpp"
+#include "modeling/labeling.hpp"
 #include "tubebin/core/random.hpp"
 #include "tubebin/modeling/filtering.hpp"
-#include "tubebin/modeling/labeling.hpp"
-#include "tubebin/modeling/path_cover.hpp"
 
 namespace tubebin {
 namespace {
@@ -126,8 +126,8 @@ TEST(Labeling, DistancesMatchSampledSurfaces) {
 TEST(Labeling, TakesTheNearestSurfaceWithinReach) {
   const std::vector<Vec3> low = {Vec3(-0.1, 0, 0.0125), Vec3(0.1, 0, 0.0125)};
   const std::vector<Vec3> high = {Vec3(0, -0.1, 0.0375), Vec3(0, 0.1, 0.0375)};
-  const std::vector<Point> points = {Point(0.05f, 0.0f, 0.0253f), Point(0.0f, 0.05f, 0.0505f),
-                                     Point(0.05f, 0.05f, 0.0f)};
+  const std::vector<cloud::Point> points = {cloud::Point(0.05f, 0.0f, 0.0253f), cloud::Point(0.0f, 0.05f, 0.0505f),
+                                            cloud::Point(0.05f, 0.05f, 0.0f)};
   const auto nearest = nearest_surfaces(points, {{low, 0.0125}, {high, 0.0125}}, 0.006);
   EXPECT_EQ(nearest[0].surface, 0u);
   EXPECT_EQ(nearest[1].surface, 1u);
@@ -136,7 +136,7 @@ TEST(Labeling, TakesTheNearestSurfaceWithinReach) {
 
 TEST(Filtering, DownsamplingIsExactSeededAndBlindToTheOrder) {
   Random random(3);
-  std::vector<Point> points;
+  std::vector<cloud::Point> points;
   for (int i = 0; i < 1000; ++i)
     points.emplace_back(static_cast<float>(random.uniform(0, 1)), static_cast<float>(random.uniform(0, 1)), 0.0f);
   std::vector<std::uint32_t> indices(points.size());
@@ -146,7 +146,7 @@ TEST(Filtering, DownsamplingIsExactSeededAndBlindToTheOrder) {
   EXPECT_EQ(downsample(points, indices, 0.3, 4), kept);
   EXPECT_NE(downsample(points, indices, 0.3, 5), kept);
 
-  std::vector<Point> reversed(points.rbegin(), points.rend());
+  std::vector<cloud::Point> reversed(points.rbegin(), points.rend());
   std::set<float> xs;
   std::set<float> reversed_xs;
   for (const auto i : kept) xs.insert(points[i].x());
@@ -155,10 +155,11 @@ TEST(Filtering, DownsamplingIsExactSeededAndBlindToTheOrder) {
 }
 
 TEST(Filtering, CropsFloorAndWalls) {
-  const Bin bin;
-  const std::vector<Point> points = {Point(0, 0, 0),          Point(0, 0, 0.01f), Point(0.275f, 0, 0.1f),
-                                     Point(0.2f, 0.1f, 0.1f), Point(NAN, 0, 0),   Point(0.27f, 0, 0.25f)};
-  const ModelingInput input{.points = points, .world_from_sensor = Scanner{}.world_from_scanner(), .bin = bin};
+  const scene::Bin bin;
+  const std::vector<cloud::Point> points = {cloud::Point(0, 0, 0),         cloud::Point(0, 0, 0.01f),
+                                            cloud::Point(0.275f, 0, 0.1f), cloud::Point(0.2f, 0.1f, 0.1f),
+                                            cloud::Point(NAN, 0, 0),       cloud::Point(0.27f, 0, 0.25f)};
+  const ModelingInput input{.points = points, .world_from_sensor = scene::Scanner{}.world_from_scanner(), .bin = bin};
   EXPECT_EQ(crop_bin(input, {}), (std::vector<std::uint32_t>{1, 3, 5}));
 }
 

@@ -1,4 +1,4 @@
-#include "tubebin/modeling/tube_joining.hpp"
+#include "modeling/joining/tube_joining.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "modeling/built_scene.hpp"
-#include "tubebin/modeling/occlusion.hpp"
+#include "modeling/joining/occlusion.hpp"
 
 namespace tubebin {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 constexpr double kSheetSpacing = 0.004;  // metres, of a built cloud's points
 
 /// A level sheet of points about `center`.
-void add_sheet(const Vec3& center, double half_size, std::vector<Point>& points) {
+void add_sheet(const Vec3& center, double half_size, std::vector<cloud::Point>& points) {
   for (double x = -half_size; x <= half_size; x += kSheetSpacing)
     for (double y = -half_size; y <= half_size; y += kSheetSpacing)
       points.push_back((center + Vec3(x, y, 0)).cast<float>());
@@ -31,7 +31,7 @@ class TubeJoining : public ::testing::Test {
   OcclusionTest occlusion() const {
     const Pose world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 2});
     const ModelingInput input{.points = points_, .world_from_sensor = world_from_sensor, .bin = std::nullopt};
-    return {input, {world_from_sensor, Point::Zero()}, kSheetSpacing, kRadius};
+    return {input, {world_from_sensor, cloud::Point::Zero()}, kSheetSpacing, kRadius};
   }
 
   std::vector<double> joined_lengths(const std::vector<TubePiece>& pieces) const {
@@ -54,7 +54,7 @@ class TubeJoining : public ::testing::Test {
   }
 
  private:
-  std::vector<Point> points_;
+  std::vector<cloud::Point> points_;
 };
 
 TEST_F(TubeJoining, BitsOfSurfaceTellNoCommonLength) {
@@ -95,27 +95,27 @@ TEST_F(TubeJoining, EndsThatPassEachOtherAreOneTubes) {
   EXPECT_GT(cost(2.0 * kRadius, 1.2 * kRadius), 0.0);  // side by side
 }
 
-TEST(Occlusion, SeesTubesThatHangOverTheWall) {
-  const Scene scene = scene_of({tube_along({{0, 0, 0.22}, {0, 0.4, 0.22}})});
-  const Scan view = scan(scene, 1);
-  const OcclusionTest occlusion(input_of(view.cloud, scene.bin), {view.cloud.world_from_sensor, Point::Zero()}, 0.001,
-                                kRadius);
+TEST(scene::Occlusion, SeesTubesThatHangOverTheWall) {
+  const scene::Scene scene = scene_of({tube_along({{0, 0, 0.22}, {0, 0.4, 0.22}})});
+  const scan::Scan view = scan(scene, 1);
+  const OcclusionTest occlusion(input_of(view.cloud, scene.bin), {view.cloud.world_from_sensor, cloud::Point::Zero()},
+                                0.001, kRadius);
   ASSERT_GT(0.3, scene.bin.width / 2.0 + scene.bin.wall_thickness);
   EXPECT_EQ(occlusion.around({0, 0.3, 0.22}, Vec3::UnitY()).surface, 1.0);
   EXPECT_EQ(occlusion.around({0.05, 0.3, 0.22}, Vec3::UnitY()).empty, 1.0);
 }
 
-TEST(Occlusion, LeavesOutWhatIsNotFiniteInAnyCoordinate) {
-  std::vector<Point> points;
+TEST(scene::Occlusion, LeavesOutWhatIsNotFiniteInAnyCoordinate) {
+  std::vector<cloud::Point> points;
   add_sheet({0, 0, 0}, 0.1, points);
   for (int axis = 0; axis < 3; ++axis) {
-    Point point = Point::Zero();
+    cloud::Point point = cloud::Point::Zero();
     point[axis] = std::numeric_limits<float>::quiet_NaN();
     points.push_back(point);
   }
   const Pose world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 2});
   const ModelingInput input{.points = points, .world_from_sensor = world_from_sensor, .bin = std::nullopt};
-  const OcclusionTest occlusion(input, {world_from_sensor, Point::Zero()}, kSheetSpacing, kRadius);
+  const OcclusionTest occlusion(input, {world_from_sensor, cloud::Point::Zero()}, kSheetSpacing, kRadius);
   EXPECT_EQ(occlusion.around({0, 0, -kRadius}, Vec3::UnitX()).surface, 1.0);
 }
 

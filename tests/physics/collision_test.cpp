@@ -19,10 +19,10 @@ double distance_to_cylinder(const Vec3& a, const Vec3& b, double radius, const V
   return std::min(std::max(along, across), 0.0) + std::hypot(std::max(along, 0.0), std::max(across, 0.0));
 }
 
-double distance_to_tube(const PlacedTube& tube, const Vec3& p) {
+double distance_to_tube(const scene::PlacedTube& tube, const Vec3& p) {
   double nearest = 1e9;
   const std::vector<int> degrees = tube.tube.node_degrees();
-  for (const Cylinder& c : tube.tube.cylinders)
+  for (const tube::Cylinder& c : tube.tube.cylinders)
     nearest = std::min(
         nearest, distance_to_cylinder(tube.node_in_world(c.node_a), tube.node_in_world(c.node_b), tube.tube.radius, p));
   for (int i = 0; i < static_cast<int>(degrees.size()); ++i)
@@ -31,17 +31,17 @@ double distance_to_tube(const PlacedTube& tube, const Vec3& p) {
   return nearest;
 }
 
-double distance_to_bin(const Bin& bin, const Vec3& p) {
+double distance_to_bin(const scene::Bin& bin, const Vec3& p) {
   double nearest = 1e9;
-  for (const Box& box : bin_boxes(bin)) nearest = std::min(nearest, box.exteriorDistance(p));
+  for (const scene::Box& box : scene::bin_boxes(bin)) nearest = std::min(nearest, box.exteriorDistance(p));
   return nearest;
 }
 
 /// Points all over a tube's cylinders and caps, `spacing` apart.
-std::vector<Vec3> surface_points(const PlacedTube& tube, double spacing) {
+std::vector<Vec3> surface_points(const scene::PlacedTube& tube, double spacing) {
   std::vector<Vec3> points;
   const double r = tube.tube.radius;
-  for (const Cylinder& c : tube.tube.cylinders) {
+  for (const tube::Cylinder& c : tube.tube.cylinders) {
     const Vec3 a = tube.node_in_world(c.node_a);
     const Vec3 b = tube.node_in_world(c.node_b);
     const Vec3 axis = (b - a).normalized();
@@ -61,11 +61,11 @@ std::vector<Vec3> surface_points(const PlacedTube& tube, double spacing) {
   return points;
 }
 
-PlacedTube straight(const Vec3& a, const Vec3& b, double radius = 0.0125) {
-  return {Tube{.radius = radius, .mass = 0.1, .nodes = {a, b}, .cylinders = {{0, 1, 0}}}, Pose::Identity()};
+scene::PlacedTube straight(const Vec3& a, const Vec3& b, double radius = 0.0125) {
+  return {tube::Tube{.radius = radius, .mass = 0.1, .nodes = {a, b}, .cylinders = {{0, 1, 0}}}, Pose::Identity()};
 }
 
-std::vector<Touch> touches_of(const PlacedTube& a, const PlacedTube& b, double depth_min = 0.0) {
+std::vector<Touch> touches_of(const scene::PlacedTube& a, const scene::PlacedTube& b, double depth_min = 0.0) {
   std::vector<Touch> touches;
   collide(collision_tube(a), collision_tube(b), depth_min, touches);
   return touches;
@@ -111,17 +111,17 @@ TEST(Collision, FacingEndsTouchFaceToFace) {
 TEST(Collision, GapsOfBentTubesMatchTheirSampledSurfaces) {
   // Oracle: dense points of one surface against the exact distance function of the other, both ways.
   Random random(3);
-  TubeOptions options;
+  tube::TubeOptions options;
   options.length = 0.12;
   options.cylinder_count_min = 1;
   options.cylinder_count_max = 4;
   constexpr double kSpacing = 0.0008;
   int compared = 0;
   for (int trial = 0; trial < 4000 && compared < 40; ++trial) {
-    const std::vector<Tube> tubes = generate_tubes(2, options, random);
-    const PlacedTube a{tubes[0], Pose::Identity()};
+    const std::vector<tube::Tube> tubes = tube::generate_tubes(2, options, random);
+    const scene::PlacedTube a{tubes[0], Pose::Identity()};
     const Vec3 offset(random.uniform(-0.08, 0.08), random.uniform(-0.08, 0.08), random.uniform(-0.08, 0.08));
-    const PlacedTube b{tubes[1], make_pose(random.rotation(), offset)};
+    const scene::PlacedTube b{tubes[1], make_pose(random.rotation(), offset)};
     const auto touches = touches_of(a, b, -0.02);
     if (touches.empty()) continue;
     double depth = -1.0;
@@ -141,17 +141,17 @@ TEST(Collision, GapsOfBentTubesMatchTheirSampledSurfaces) {
 
 TEST(Collision, GapsToTheBinMatchTheSampledSurface) {
   Random random(4);
-  TubeOptions options;
+  tube::TubeOptions options;
   options.length = 0.15;
   options.cylinder_count_min = 1;
   options.cylinder_count_max = 3;
-  const Bin bin;
+  const scene::Bin bin;
   int compared = 0;
   for (int trial = 0; trial < 4000 && compared < 40; ++trial) {
     const Vec3 place(random.uniform(-0.3, 0.3), random.uniform(-0.2, 0.2), random.uniform(0.0, 0.3));
-    const PlacedTube tube{generate_tubes(1, options, random).front(), make_pose(random.rotation(), place)};
+    const scene::PlacedTube tube{tube::generate_tubes(1, options, random).front(), make_pose(random.rotation(), place)};
     std::vector<Touch> touches;
-    collide(bin_boxes(bin), collision_tube(tube), -0.01, touches);
+    collide(scene::bin_boxes(bin), collision_tube(tube), -0.01, touches);
     if (touches.empty()) continue;
     double depth = -1.0;
     for (const Touch& touch : touches) depth = std::max(depth, touch.depth);
@@ -167,8 +167,8 @@ TEST(Collision, GapsToTheBinMatchTheSampledSurface) {
 
 /// How far two straight tubes overlap, negative for a gap: the least over all directions, found by search. By duality
 /// the least way that parts two convex solids, or what keeps them apart, with their support functions in closed form.
-double overlap_of_straight(const PlacedTube& first, const PlacedTube& second) {
-  const auto reach = [](const PlacedTube& tube, const Vec3& direction) {
+double overlap_of_straight(const scene::PlacedTube& first, const scene::PlacedTube& second) {
+  const auto reach = [](const scene::PlacedTube& tube, const Vec3& direction) {
     const Vec3 a = tube.node_in_world(0), b = tube.node_in_world(1);
     const double along = (b - a).normalized().dot(direction);
     return std::max(a.dot(direction), b.dot(direction)) +
@@ -194,8 +194,8 @@ TEST(Collision, EndsThatLieNearlySideBySideTouchAsDeeplyAsTheyOverlap) {
   for (int trial = 0; trial < 400; ++trial) {
     const Vec3 tilt(0.0, random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4));
     const Vec3 end(random.uniform(-0.01, 0.01), random.uniform(0.01, 0.025), random.uniform(-0.01, 0.01));
-    const PlacedTube a = straight({0, 0, 0}, {0.3, 0, 0});
-    const PlacedTube b = straight(end, end + 0.2 * (Vec3::UnitX() + tilt).normalized());
+    const scene::PlacedTube a = straight({0, 0, 0}, {0.3, 0, 0});
+    const scene::PlacedTube b = straight(end, end + 0.2 * (Vec3::UnitX() + tilt).normalized());
     const double overlap = overlap_of_straight(a, b);
     if (overlap < 0.0 || overlap > 0.0125) continue;
     ++overlapping;
@@ -211,16 +211,16 @@ TEST(Collision, EndsThatLieNearlySideBySideTouchAsDeeplyAsTheyOverlap) {
 
 TEST(Collision, AWallsEdgeThatCutsIntoARimTouchesIt) {
   // An end that hangs over the wall's top, tilted by all angles: the edge meets the rim anywhere, at last the side.
-  const Bin bin{.length = 0.55, .width = 0.37, .height = 0.20};
+  const scene::Bin bin{.length = 0.55, .width = 0.37, .height = 0.20};
   for (double tilt = -0.5; tilt <= 0.5; tilt += 0.05) {
     const Vec3 end(0.228, -0.1768, 0.1991);
     const Vec3 direction = Vec3(0.917, -0.368, std::sin(tilt)).normalized();
-    const PlacedTube tube{
+    const scene::PlacedTube tube{
         {.radius = 0.0125, .mass = 0.1, .nodes = {Vec3::Zero(), 0.1 * direction}, .cylinders = {{0, 1, 0}}},
         make_pose(Quat::Identity(), end - 0.1 * direction)};
     double sampled = 0.0;
     for (const Vec3& p : surface_points(tube, 0.0002))
-      for (const Box& box : bin_boxes(bin))
+      for (const scene::Box& box : scene::bin_boxes(bin))
         if (box.contains(p))
           sampled = std::max(sampled, std::min((p - box.min()).minCoeff(), (box.max() - p).minCoeff()));
     ASSERT_GT(sampled, 0.001);
@@ -234,9 +234,9 @@ TEST(Collision, AWallsEdgeThatCutsIntoARimTouchesIt) {
 }
 
 TEST(Collision, ATubeOnTheWallsRimIsHeldByItsEdge) {
-  const Bin bin;
+  const scene::Bin bin;
   const double top = bin.height + 0.0125 - 0.0001;
-  const PlacedTube tube = straight({bin.length / 2 - 0.2, 0, top}, {bin.length / 2 + 0.2, 0, top});
+  const scene::PlacedTube tube = straight({bin.length / 2 - 0.2, 0, top}, {bin.length / 2 + 0.2, 0, top});
   std::vector<Touch> touches;
   collide(collision_boxes(bin), collision_tube(tube), 0.0, touches);
   ASSERT_FALSE(touches.empty());

@@ -12,13 +12,13 @@
 namespace tubebin {
 namespace {
 
-Tube straight_tube(double length) {
+tube::Tube straight_tube(double length) {
   return {.radius = 0.0125, .mass = 0.1, .nodes = {Vec3(0, 0, 0), Vec3(length, 0, 0)}, .cylinders = {{0, 1, 0}}};
 }
 
-PlacedTube at(const Tube& tube, const Vec3& place) { return {tube, make_pose(Quat::Identity(), place)}; }
+scene::PlacedTube at(const tube::Tube& tube, const Vec3& place) { return {tube, make_pose(Quat::Identity(), place)}; }
 
-double deepest_overlap(const std::vector<PlacedTube>& tubes, const Bin& bin) {
+double deepest_overlap(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin) {
   return deepest_penetration(find_contacts(tubes, bin, 0.0));
 }
 
@@ -28,7 +28,7 @@ TEST(RigidWorld, FreeFallFollowsItsLawAtEveryStepSize) {
     options.time_step = step;
     options.damping_linear = options.damping_angular = 0.0;
     options.speed_max = 1000.0;
-    RigidWorld world({at(straight_tube(0.3), {0, 0, 5.0})}, Bin{}, options, 1);
+    RigidWorld world({at(straight_tube(0.3), {0, 0, 5.0})}, scene::Bin{}, options, 1);
     const int steps = static_cast<int>(std::lround(0.4 / step));
     for (int i = 0; i < steps; ++i) world.step(step_settings(options));
     const double fallen = 5.0 - world.center_of_mass(0).z();
@@ -43,7 +43,7 @@ TEST(RigidWorld, ATubeRestsAtItsRadiusAtEveryStepSize) {
   for (const double step : {0.001, 0.002, 0.004}) {
     PhysicsOptions options;
     options.time_step = step;
-    RigidWorld world({at(straight_tube(0.3), {-0.15, 0, 0.05})}, Bin{}, options, 1);
+    RigidWorld world({at(straight_tube(0.3), {-0.15, 0, 0.05})}, scene::Bin{}, options, 1);
     for (int i = 0; i < static_cast<int>(2.0 / step); ++i) world.step(step_settings(options));
     EXPECT_NEAR(world.center_of_mass(0).z(), 0.0125 - options.contact_layer, 2e-5) << step;
     EXPECT_LT(world.speed(0), 1e-4);
@@ -51,9 +51,10 @@ TEST(RigidWorld, ATubeRestsAtItsRadiusAtEveryStepSize) {
 }
 
 TEST(RigidWorld, AStandingTubeStaysUpright) {
-  const Tube tube{.radius = 0.0125, .mass = 0.1, .nodes = {Vec3(0, 0, 0), Vec3(0, 0, 0.1)}, .cylinders = {{0, 1, 0}}};
+  const tube::Tube tube{
+      .radius = 0.0125, .mass = 0.1, .nodes = {Vec3(0, 0, 0), Vec3(0, 0, 0.1)}, .cylinders = {{0, 1, 0}}};
   const PhysicsOptions options;
-  RigidWorld world({at(tube, {0, 0, 0.001})}, Bin{}, options, 1);
+  RigidWorld world({at(tube, {0, 0, 0.001})}, scene::Bin{}, options, 1);
   for (int i = 0; i < 500; ++i) world.step(step_settings(options));
   EXPECT_NEAR(world.center_of_mass(0).z(), 0.05, 3e-4);
   EXPECT_GT((world.pose(0).linear() * Vec3::UnitZ()).z(), 0.9999);
@@ -64,7 +65,7 @@ TEST(RigidWorld, FrictionDecidesWhetherALeaningTubeSlides) {
   const auto slides = [](double friction) {
     PhysicsOptions options;
     options.friction_bin = friction;
-    Bin bin;
+    scene::Bin bin;
     bin.height = 0.5;
     const double angle = radians(60.0);
     const double length = 0.3;
@@ -74,7 +75,8 @@ TEST(RigidWorld, FrictionDecidesWhetherALeaningTubeSlides) {
     const Vec3 top(bin.length / 2 - r * std::sin(angle), 0, 0);
     Vec3 base = top - length * direction;
     base.z() = r * std::cos(angle);
-    const Tube tube{.radius = r, .mass = 0.1, .nodes = {Vec3::Zero(), length * direction}, .cylinders = {{0, 1, 0}}};
+    const tube::Tube tube{
+        .radius = r, .mass = 0.1, .nodes = {Vec3::Zero(), length * direction}, .cylinders = {{0, 1, 0}}};
     RigidWorld world({at(tube, base)}, bin, options, 1);
     const double start = world.center_of_mass(0).z();
     for (int i = 0; i < 250; ++i) world.step(step_settings(options));
@@ -86,12 +88,12 @@ TEST(RigidWorld, FrictionDecidesWhetherALeaningTubeSlides) {
 
 TEST(Spawn, IsAboveTheRimBetweenTheWallsAndFreeOfOverlap) {
   Random random(9);
-  const Bin bin;
+  const scene::Bin bin;
   const PhysicsOptions options;
-  const auto tubes = spawn(generate_tubes(20, {}, random), bin, options, random);
+  const auto tubes = spawn(tube::generate_tubes(20, {}, random), bin, options, random);
   ASSERT_TRUE(tubes);
-  for (const PlacedTube& tube : *tubes) {
-    const Box bounds = collision_tube(tube).bounds;
+  for (const scene::PlacedTube& tube : *tubes) {
+    const scene::Box bounds = collision_tube(tube).bounds;
     EXPECT_GE(bounds.min().z(), bin.height);
     EXPECT_GE(bounds.min().x(), -bin.length / 2);
     EXPECT_LE(bounds.max().x(), bin.length / 2);
@@ -102,7 +104,7 @@ TEST(Spawn, IsAboveTheRimBetweenTheWallsAndFreeOfOverlap) {
 }
 
 TEST(Spawn, GivesUpOnATubeThatFitsInNoOrientation) {
-  Bin narrow;
+  scene::Bin narrow;
   narrow.length = narrow.width = 0.03;
   const DropResult result = drop_tubes({straight_tube(0.5)}, narrow, PhysicsOptions{}, 1);
   EXPECT_EQ(result.failure, DropFailure::spawn);
@@ -110,9 +112,9 @@ TEST(Spawn, GivesUpOnATubeThatFitsInNoOrientation) {
 
 TEST(Drop, LeavesTubesAtRestTouchingAndHardlyInterpenetrating) {
   Random random(21);
-  const Bin bin;
+  const scene::Bin bin;
   const PhysicsOptions options;
-  const DropResult result = drop_tubes(generate_tubes(6, {}, random), bin, options, 5);
+  const DropResult result = drop_tubes(tube::generate_tubes(6, {}, random), bin, options, 5);
   ASSERT_EQ(result.failure, DropFailure::none) << result.detail;
   ASSERT_EQ(result.tubes.size(), 6u);
   EXPECT_LE(deepest_overlap(result.tubes, bin), options.penetration_max);
@@ -132,28 +134,28 @@ TEST(Drop, LeavesTubesAtRestTouchingAndHardlyInterpenetrating) {
 
 TEST(Drop, ShortTubesComeToRestToo) {
   Random random(3);
-  TubeOptions options;
+  tube::TubeOptions options;
   options.length = 0.1;
   options.cylinder_count_min = 2;
   options.cylinder_count_max = 3;
-  const Bin bin{.length = 2.0, .width = 1.5};
-  const DropResult drop = drop_tubes(generate_tubes(20, options, random), bin, PhysicsOptions{}, 1);
+  const scene::Bin bin{.length = 2.0, .width = 1.5};
+  const DropResult drop = drop_tubes(tube::generate_tubes(20, options, random), bin, PhysicsOptions{}, 1);
   EXPECT_EQ(drop.failure, DropFailure::none) << drop.detail;
 }
 
 TEST(Drop, TheSeedDecidesWhateverRanBefore) {
   Random random(22);
-  const std::vector<Tube> tubes = generate_tubes(4, {}, random);
-  const DropResult first = drop_tubes(tubes, Bin{}, PhysicsOptions{}, 3);
-  drop_tubes(generate_tubes(3, {}, random), Bin{}, PhysicsOptions{}, 4);
-  const DropResult second = drop_tubes(tubes, Bin{}, PhysicsOptions{}, 3);
+  const std::vector<tube::Tube> tubes = tube::generate_tubes(4, {}, random);
+  const DropResult first = drop_tubes(tubes, scene::Bin{}, PhysicsOptions{}, 3);
+  drop_tubes(tube::generate_tubes(3, {}, random), scene::Bin{}, PhysicsOptions{}, 4);
+  const DropResult second = drop_tubes(tubes, scene::Bin{}, PhysicsOptions{}, 3);
   ASSERT_EQ(first.tubes.size(), second.tubes.size());
   for (std::size_t i = 0; i < first.tubes.size(); ++i)
     EXPECT_EQ(first.tubes[i].world_from_tube.matrix(), second.tubes[i].world_from_tube.matrix());
 }
 
 TEST(Drop, ATubeThatFallsBesideTheBinIsReported) {
-  Bin low;
+  scene::Bin low;
   low.height = 0.002;
   low.length = low.width = 0.06;
   const DropResult result = drop_tubes({straight_tube(0.5)}, low, PhysicsOptions{}, 2);
@@ -165,12 +167,14 @@ TEST(Drop, AMovingSceneAtTheTimeLimitIsUnsettled) {
   PhysicsOptions options;
   options.time_limit = 0.2;
   options.check_time = 0.05;
-  const DropResult result = drop_tubes({straight_tube(0.3)}, Bin{}, options, 2);
+  const DropResult result = drop_tubes({straight_tube(0.3)}, scene::Bin{}, options, 2);
   EXPECT_EQ(result.failure, DropFailure::unsettled);
 }
 
 TEST(RestCheck, FindsTheTubeThatNothingHolds) {
-  const auto contact = [](std::uint32_t a, std::uint32_t b) { return Contact{a, b, Vec3::Zero(), Vec3::UnitZ(), 0.0}; };
+  const auto contact = [](std::uint32_t a, std::uint32_t b) {
+    return scene::Contact{a, b, Vec3::Zero(), Vec3::UnitZ(), 0.0};
+  };
   EXPECT_FALSE(find_floating({contact(0, 1), contact(1, 2), contact(2, 3)}, 3));
   EXPECT_EQ(find_floating({contact(0, 1), contact(2, 3)}, 3), 1u);
   EXPECT_EQ(find_floating({}, 1), 0u);

@@ -10,14 +10,14 @@ namespace {
 /// Tubes that wander by steps of all sizes, some smaller and some larger than what makes a list anew.
 TEST(NearPieces, MissNoTouchWhileTubesMove) {
   Random random(5);
-  std::vector<PlacedTube> tubes;
-  for (const Tube& tube : generate_tubes(6, {}, random))
+  std::vector<scene::PlacedTube> tubes;
+  for (const tube::Tube& tube : tube::generate_tubes(6, {}, random))
     tubes.push_back({tube, make_pose(random.rotation(), Vec3(0, 0, random.uniform(0.0, 0.05)))});
   NearPieces near_pieces;
   std::size_t touches_found = 0, pairs_listed = 0, pairs_of_all = 0;
   for (int step = 0; step < 400; ++step) {
     std::vector<CollisionTube> shapes;
-    for (PlacedTube& tube : tubes) {
+    for (scene::PlacedTube& tube : tubes) {
       const double size = random.uniform(0.0, 1.0) < 0.1 ? 0.02 : 0.0005;
       const auto some = [&] { return random.uniform(-size, size); };
       tube.world_from_tube.pretranslate(Vec3(some(), some(), some()));

@@ -71,16 +71,16 @@ TEST(WarmStart, FindsEachContactAmongThoseOfItsBodies) {
   }
 }
 
-PlacedTube lying(double x, double z, bool along_x) {
+scene::PlacedTube lying(double x, double z, bool along_x) {
   const Vec3 end = along_x ? Vec3(0.2, 0, 0) : Vec3(0, 0.2, 0);
-  const Tube tube{.radius = 0.0125, .mass = 0.05, .nodes = {-0.5 * end, 0.5 * end}, .cylinders = {{0, 1, 0}}};
+  const tube::Tube tube{.radius = 0.0125, .mass = 0.05, .nodes = {-0.5 * end, 0.5 * end}, .cylinders = {{0, 1, 0}}};
   const Vec3 place = along_x ? Vec3(0, x, z) : Vec3(x, 0, z);
   return {tube, make_pose(Quat::Identity(), place)};
 }
 
 TEST(WarmStart, ATubeThatFallsDoesNotBounce) {
   const PhysicsOptions options;
-  RigidWorld world({lying(0, 0.05, true)}, Bin{}, options, 1);
+  RigidWorld world({lying(0, 0.05, true)}, scene::Bin{}, options, 1);
   double highest = 0.0;
   bool landed = false;
   for (int i = 0; i < 400; ++i) {
@@ -94,13 +94,13 @@ TEST(WarmStart, ATubeThatFallsDoesNotBounce) {
 
 /// How far layers of two tubes, laid crosswise, move in a second: all loads run through all layers below.
 double creep_of_a_stack(double warm_start) {
-  std::vector<PlacedTube> tubes;
+  std::vector<scene::PlacedTube> tubes;
   for (int layer = 0; layer < 6; ++layer)
     for (const double x : {-0.06, 0.06}) tubes.push_back(lying(x, 0.0124 + 0.0249 * layer, layer % 2 == 0));
   PhysicsOptions options;
   options.warm_start = warm_start;
   options.solver_iterations = 20;
-  RigidWorld world(tubes, Bin{}, options, 1);
+  RigidWorld world(tubes, scene::Bin{}, options, 1);
   for (int i = 0; i < 400; ++i) world.step(step_settings(options));
   const std::vector<Vec3> before = nodes_in_world(world.tubes());
   for (int i = 0; i < 200; ++i) world.step(step_settings(options));

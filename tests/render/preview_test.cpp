@@ -24,8 +24,8 @@ class Preview : public ::testing::Test {
 
 /// The drawn labels and the scanned ones: at least 99.5 % of the pixels are the same, and where they are not,
 /// one of the eight pixels around has another scanned label.
-void expect_labels_agree(const Scene& scene) {
-  const Scan scanned = scan(scene);
+void expect_labels_agree(const scene::Scene& scene) {
+  const scan::Scan scanned = scan(scene);
   const Image drawn = render_labels(scene, scanned.window);
   ASSERT_EQ(drawn.width, scanned.window.width);
   ASSERT_EQ(drawn.height, scanned.window.height);
@@ -58,23 +58,24 @@ TEST_F(Preview, LabelsAgreeWithTheScan) {
 }
 
 TEST_F(Preview, LabelsAgreeThroughOpenEnds) {
-  Scene scene = testing::random_scene(10, 8);
-  for (PlacedTube& placed : scene.tubes) placed.tube.wall_thickness = 0.001;
+  scene::Scene scene = testing::random_scene(10, 8);
+  for (scene::PlacedTube& placed : scene.tubes) placed.tube.wall_thickness = 0.001;
   // A pipe that stands up: the floor is seen through it.
-  Tube pipe{.radius = 0.03, .wall_thickness = 0.003, .mass = 1.0, .nodes = {{0, 0, 0}, {0, 0, 0.1}}, .cylinders = {}};
+  tube::Tube pipe{
+      .radius = 0.03, .wall_thickness = 0.003, .mass = 1.0, .nodes = {{0, 0, 0}, {0, 0, 0.1}}, .cylinders = {}};
   pipe.cylinders = {{0, 1, 0}};
   scene.tubes.push_back({pipe, make_pose(Quat::Identity(), Vec3(0, 0, 0.15))});
   expect_labels_agree(scene);
 }
 
 TEST_F(Preview, LabelsAgreeWithAFloorAtTheRangesEnd) {
-  Scene scene = testing::random_scene(10, 4);
+  scene::Scene scene = testing::random_scene(10, 4);
   scene.scanner.range_max = 2.0;
   expect_labels_agree(scene);
 }
 
 TEST_F(Preview, LabelsAgreeWhenTiltedAndOddlySized) {
-  Scene scene = testing::random_scene(10, 5);
+  scene::Scene scene = testing::random_scene(10, 5);
   scene.scanner.width = 1001;
   scene.scanner.height = 777;
   scene.scanner.position = {0.8, -0.3, 1.0};
@@ -83,17 +84,17 @@ TEST_F(Preview, LabelsAgreeWhenTiltedAndOddlySized) {
 }
 
 TEST_F(Preview, LabelsAgreeInTheFullImage) {
-  Scene scene = testing::random_scene(10, 6);
-  scene.scanner.region = ScanRegion::full;
+  scene::Scene scene = testing::random_scene(10, 6);
+  scene.scanner.region = scene::ScanRegion::full;
   expect_labels_agree(scene);
 }
 
 TEST_F(Preview, LitPictureShowsEveryTubesHue) {
   // Two tubes apart from each other, in red and blue say: each hue, shaded, covers part of the picture.
-  Scene scene = testing::random_scene(2, 7);
+  scene::Scene scene = testing::random_scene(2, 7);
   const Image picture = render_preview(scene, 320, 240);
   ASSERT_EQ(picture.rgb.size(), 3u * 320u * 240u);
-  const std::vector<Color> colors = label_colors(2);
+  const std::vector<cloud::Color> colors = cloud::label_colors(2);
   for (std::size_t k = 1; k <= 2; ++k) {
     const Vec3 wanted = Vec3(colors[k] >> 16 & 0xFF, colors[k] >> 8 & 0xFF, colors[k] & 0xFF).normalized();
     int pixels = 0;
@@ -107,27 +108,27 @@ TEST_F(Preview, LitPictureShowsEveryTubesHue) {
 
 TEST_F(Preview, LitPictureIsAntialiasedAndShaded) {
   const Image picture = render_preview(testing::random_scene(5, 8), 320, 240);
-  std::set<Color> colors;
+  std::set<cloud::Color> colors;
   for (int row = 0; row < picture.height; ++row)
     for (int column = 0; column < picture.width; ++column) colors.insert(picture.pixel(column, row));
   EXPECT_GT(colors.size(), 500u);
 }
 
 TEST_F(Preview, SameSceneSamePicture) {
-  const Scene scene = testing::random_scene(5, 9);
+  const scene::Scene scene = testing::random_scene(5, 9);
   EXPECT_EQ(render_preview(scene, 200, 150).rgb, render_preview(scene, 200, 150).rgb);
 }
 
 TEST_F(Preview, SceneWithoutTubesAndEmptyWindow) {
-  const Scene scene;
+  const scene::Scene scene;
   EXPECT_EQ(render_preview(scene, 64, 48).width, 64);
-  EXPECT_EQ(render_labels(scene, PixelWindow{}).rgb.size(), 0u);
+  EXPECT_EQ(render_labels(scene, scene::PixelWindow{}).rgb.size(), 0u);
 }
 
 TEST(PreviewWithoutOSMesa, IsRefusedWithTheRemedy) {
   if (can_render()) GTEST_SKIP() << "this build has OSMesa";
   try {
-    render_preview(Scene(), 64, 48);
+    render_preview(scene::Scene(), 64, 48);
     FAIL() << "drawn without OSMesa";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(std::string(error.what()), ::testing::HasSubstr("libosmesa6-dev"));

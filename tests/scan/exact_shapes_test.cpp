@@ -57,7 +57,7 @@ TEST(SolidSphere, IsEnteredAndLeftOnItsSurface) {
 }
 
 TEST(SolidBox, RayWithinAFacesPlaneTouches) {
-  const Box box(Vec3(0, -1, 2), Vec3(1, 1, 3));
+  const scene::Box box(Vec3(0, -1, 2), Vec3(1, 1, 3));
   EXPECT_FALSE(intersect(box, inverse_direction({0, 0, 1})).empty());
   EXPECT_TRUE(intersect(box, inverse_direction({-1e-9, 0, 1})).empty());
 }
@@ -94,7 +94,7 @@ TEST(ExactShapes, AgreeWithSignedDistancesOnRandomRays) {
     expect_exact([&](const Vec3& d) { return sphere.intersect(d); },
                  [&](const Vec3& p) { return (p - a).norm() - radius; }, direction);
 
-    const Box box(a.cwiseMin(b), a.cwiseMax(b));
+    const scene::Box box(a.cwiseMin(b), a.cwiseMax(b));
     expect_exact([&](const Vec3& d) { return intersect(box, inverse_direction(d)); },
                  [&](const Vec3& p) { return box_distance(p, box.min(), box.max()); }, direction);
   }

@@ -17,20 +17,20 @@ using testing::look_closely;
 using testing::random_scene;
 using testing::SphereTracer;
 
-Scene scene_of_three(std::uint64_t seed) {
-  Scene scene = random_scene(6, seed);
+scene::Scene scene_of_three(std::uint64_t seed) {
+  scene::Scene scene = random_scene(6, seed);
   look_closely(scene.scanner, 120, 76);
   scene.further_scanners.assign(2, scene.scanner);
   scene.further_scanners[0].position = {0.9, -0.1, 1.7};
   scene.further_scanners[0].rotation_deg = {0.0, 28.0, 0.0};
   scene.further_scanners[1].position = {-0.5, 0.6, 1.5};
   scene.further_scanners[1].rotation_deg = {-22.0, -18.0, 0.0};
-  scene.further_scanners[1].region = ScanRegion::tubes;
+  scene.further_scanners[1].region = scene::ScanRegion::tubes;
   return scene;
 }
 
 TEST(MergedScan, OfOneScannerIsItsScan) {
-  const Scene scene = random_scene(4, 2);
+  const scene::Scene scene = random_scene(4, 2);
   const Scan alone = scan(scene);
   const MergedScan merged = scan_from_all(scene);
   EXPECT_EQ(merged.cloud.labels, alone.cloud.labels);
@@ -41,13 +41,13 @@ TEST(MergedScan, OfOneScannerIsItsScan) {
 
 /// Sphere tracing from each point's own scanner, through the pixel that the point falls into, finds the point.
 TEST(MergedScan, EachPointIsTheFirstSurfaceThatItsScannerSees) {
-  const Scene scene = scene_of_three(3);
+  const scene::Scene scene = scene_of_three(3);
   const MergedScan merged = scan_exactly_from_all(scene);
   ASSERT_EQ(merged.cloud.sources.size(), merged.cloud.size());
   EXPECT_FALSE(merged.cloud.organized());
   std::vector<std::size_t> points_of(3, 0), tube_points(scene.tubes.size(), 0);
-  std::vector<Scene> views;
-  std::vector<Camera> cameras;
+  std::vector<scene::Scene> views;
+  std::vector<scene::Camera> cameras;
   std::vector<SphereTracer> tracers;
   for (std::size_t source = 0; source < 3; ++source) {
     views.push_back(seen_from(scene, source));
@@ -56,7 +56,7 @@ TEST(MergedScan, EachPointIsTheFirstSurfaceThatItsScannerSees) {
   }
   for (std::size_t i = 0; i < merged.cloud.size(); ++i) {
     const std::uint32_t source = merged.cloud.sources[i];
-    const Label label = merged.cloud.labels[i];
+    const cloud::Label label = merged.cloud.labels[i];
     const Vec3 point = merged.cloud.points[i].cast<double>();
     ++points_of.at(source);
     if (label > 0) ++tube_points[label - 1];
@@ -77,7 +77,7 @@ TEST(MergedScan, EachPointIsTheFirstSurfaceThatItsScannerSees) {
     for (int row = 0; row < cameras[source].height(); ++row)
       for (int column = 0; column < cameras[source].width(); ++column) {
         const auto traced = tracers[source].trace(cameras[source].pixel_direction_in_world(column, row));
-        hits += traced.found && (traced.label > 0 || views[source].scanner.region != ScanRegion::tubes);
+        hits += traced.found && (traced.label > 0 || views[source].scanner.region != scene::ScanRegion::tubes);
       }
     EXPECT_EQ(points_of[source], hits) << "source " << source;
     EXPECT_GT(hits, 300U);
@@ -85,15 +85,15 @@ TEST(MergedScan, EachPointIsTheFirstSurfaceThatItsScannerSees) {
 }
 
 TEST(MergedScan, EachScannerErrsInItsOwnWay) {
-  Scene scene = random_scene(4, 5);
+  scene::Scene scene = random_scene(4, 5);
   look_closely(scene.scanner, 200, 120);
   scene.scanner.effects.range_noise.sigma = 0.001;
   scene.further_scanners = {scene.scanner};
   const MergedScan merged = scan_from_all(scene, 42);
-  const Cloud alone = scan(seen_from(scene, 0), 42).cloud;
-  std::vector<Point> expected;
-  for (const Point& point : alone.points)
-    if (is_finite(point)) expected.push_back(point);
+  const cloud::Cloud alone = scan(seen_from(scene, 0), 42).cloud;
+  std::vector<cloud::Point> expected;
+  for (const cloud::Point& point : alone.points)
+    if (cloud::is_finite(point)) expected.push_back(point);
   const std::size_t count = expected.size();
   ASSERT_EQ(merged.cloud.size(), 2 * count);
   std::size_t equal = 0;
@@ -105,21 +105,21 @@ TEST(MergedScan, EachScannerErrsInItsOwnWay) {
 }
 
 TEST(MergedScan, CountsPixelsOfAllScanners) {
-  const Scene scene = scene_of_three(6);
+  const scene::Scene scene = scene_of_three(6);
   std::vector<std::size_t> amodal(scene.tubes.size(), 0);
-  std::map<std::pair<Label, Label>, std::size_t> pixels;
+  std::map<std::pair<cloud::Label, cloud::Label>, std::size_t> pixels;
   for (std::size_t source = 0; source < 3; ++source) {
-    const Scene view = seen_from(scene, source);
+    const scene::Scene view = seen_from(scene, source);
     const auto views = view_tubes_alone(view);
     for (std::size_t k = 0; k < views.size(); ++k) amodal[k] += views[k].size();
-    for (const Occlusion& occlusion : find_occlusions(view, views))
+    for (const scene::Occlusion& occlusion : find_occlusions(view, views))
       pixels[{occlusion.behind, occlusion.front}] += occlusion.pixels;
   }
   const PileView pile = view_pile(scene);
   EXPECT_EQ(pile.amodal_pixels, amodal);
   ASSERT_EQ(pile.occlusions.size(), pixels.size());
   auto expected = pixels.begin();
-  for (const Occlusion& occlusion : pile.occlusions) {
+  for (const scene::Occlusion& occlusion : pile.occlusions) {
     EXPECT_EQ(std::pair(occlusion.behind, occlusion.front), expected->first);
     EXPECT_EQ(occlusion.pixels, expected->second);
     ++expected;

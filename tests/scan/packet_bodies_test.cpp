@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kDepthMin = 0.1;  // metres
 
-Scene scene_in_small_image(int tubes, std::uint64_t seed) {
-  Scene scene = testing::random_scene(tubes, seed);
+scene::Scene scene_in_small_image(int tubes, std::uint64_t seed) {
+  scene::Scene scene = testing::random_scene(tubes, seed);
   testing::look_closely(scene.scanner, 240, 150);
   return scene;
 }
@@ -26,8 +26,8 @@ bool is_met(const auto& solid, const Vec3& direction) {
 
 /// Calls check(bodies, direction) for every pixel of the window.
 template <typename Check>
-void for_each_pixel(const SceneSolids& solids, const Camera& camera, const Check& check) {
-  const PixelWindow window = view_window(solids, SeenBodies::bin_and_tubes, camera, kDepthMin);
+void for_each_pixel(const SceneSolids& solids, const scene::Camera& camera, const Check& check) {
+  const scene::PixelWindow window = view_window(solids, SeenBodies::bin_and_tubes, camera, kDepthMin);
   const PacketBodies bodies(solids, camera, window, kDepthMin);
   for (int row = window.y; row < window.y + window.height; ++row)
     for (int column = window.x; column < window.x + window.width; ++column)
@@ -36,10 +36,10 @@ void for_each_pixel(const SceneSolids& solids, const Camera& camera, const Check
 
 TEST(PacketBodies, NameAllThatARayMeets) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const Scene scene = scene_in_small_image(6, seed);
+    const scene::Scene scene = scene_in_small_image(6, seed);
     const SceneSolids solids = scene_solids(scene);
     int met = 0, missing = 0;
-    for_each_pixel(solids, Camera(scene.scanner), [&](const BodiesInReach& bodies, const Vec3& direction) {
+    for_each_pixel(solids, scene::Camera(scene.scanner), [&](const BodiesInReach& bodies, const Vec3& direction) {
       const auto is_named = [&](std::uint32_t solid) {
         const auto end = bodies.solids.begin() + std::min<std::ptrdiff_t>(bodies.solid_count, BodiesInReach::kFew);
         return bodies.solid_count > BodiesInReach::kFew || std::find(bodies.solids.begin(), end, solid) != end;
@@ -62,9 +62,9 @@ TEST(PacketBodies, NameAllThatARayMeets) {
 }
 
 TEST(PacketBodies, LeaveMostOfAnImageWithoutTubes) {
-  const Scene scene = scene_in_small_image(1, 4);
+  const scene::Scene scene = scene_in_small_image(1, 4);
   int pixels = 0, with_tube = 0;
-  for_each_pixel(scene_solids(scene), Camera(scene.scanner), [&](const BodiesInReach& bodies, const Vec3&) {
+  for_each_pixel(scene_solids(scene), scene::Camera(scene.scanner), [&](const BodiesInReach& bodies, const Vec3&) {
     ++pixels;
     with_tube += bodies.solid_count > 0;
   });
@@ -73,11 +73,11 @@ TEST(PacketBodies, LeaveMostOfAnImageWithoutTubes) {
 }
 
 TEST(RayCaster, FindsTheSameByTreeAsOneByOneAndRayByRay) {
-  const Scene scene = scene_in_small_image(8, 5);
-  const Camera camera(scene.scanner);
+  const scene::Scene scene = scene_in_small_image(8, 5);
+  const scene::Camera camera(scene.scanner);
   const SceneSolids solids = scene_solids(scene);
   const RayCaster caster(solids, kDepthMin, 3.0);
-  const PixelWindow window = view_window(solids, SeenBodies::bin_and_tubes, camera, kDepthMin);
+  const scene::PixelWindow window = view_window(solids, SeenBodies::bin_and_tubes, camera, kDepthMin);
   const PacketBodies bodies(solids, camera, window, caster.depth_min());
   BodiesInReach all;
   all.boxes = kAllBoxes;

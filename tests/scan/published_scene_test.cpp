@@ -19,10 +19,10 @@ class PublishedScene : public ::testing::TestWithParam<const char*> {
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is missing";
     scene_.bin = {0.80, 0.60, 0.20, 0.02};
     scene_.scanner.range_max = 2.0;
-    scene_.tubes = read_tubes_txt(path);
+    scene_.tubes = scene::read_tubes_txt(path);
   }
 
-  Scene scene_;
+  scene::Scene scene_;
 };
 
 TEST_P(PublishedScene, PointsLieOnTheSurfacesTheyName) {
@@ -34,8 +34,8 @@ TEST_P(PublishedScene, PointsLieOnTheSurfacesTheyName) {
 /// Compares pixels along silhouettes, where another label is next to them, and others here and there.
 TEST_P(PublishedScene, LabelsAgreeWithSphereTracingAlongSilhouettes) {
   const Scan result = scan(scene_);
-  const Camera camera(scene_.scanner);
-  const Cloud& cloud = result.cloud;
+  const scene::Camera camera(scene_.scanner);
+  const cloud::Cloud& cloud = result.cloud;
   const testing::SphereTracer tracer(scene_);
   std::size_t silhouettes = 0, compared = 0, wrong = 0;
   for (std::size_t i = 1; i < cloud.size(); ++i) {
@@ -46,7 +46,7 @@ TEST_P(PublishedScene, LabelsAgreeWithSphereTracingAlongSilhouettes) {
     const int row = result.window.y + static_cast<int>(i / cloud.width);
     const auto traced = tracer.trace(camera.pixel_direction_in_world(column, row));
     ++compared;
-    if (traced.found != is_finite(cloud.points[i]) || (traced.found && traced.label != cloud.labels[i])) ++wrong;
+    if (traced.found != cloud::is_finite(cloud.points[i]) || (traced.found && traced.label != cloud.labels[i])) ++wrong;
   }
   EXPECT_GT(compared, 500u);
   EXPECT_EQ(wrong, 0u);
@@ -55,10 +55,10 @@ TEST_P(PublishedScene, LabelsAgreeWithSphereTracingAlongSilhouettes) {
 TEST_P(PublishedScene, FloorAtTheRangesEndIsThere) {
   const Scan result = scan(scene_);
   std::size_t holes = 0;
-  for (const Point& point : result.cloud.points) holes += is_finite(point) ? 0 : 1;
+  for (const cloud::Point& point : result.cloud.points) holes += cloud::is_finite(point) ? 0 : 1;
   // From above, every pixel of the bin's window shows the bin or a tube; a tube that leans out widens the
   // window.
-  const Camera camera(scene_.scanner);
+  const scene::Camera camera(scene_.scanner);
   const double border = scene_.bin.wall_thickness;
   const Eigen::Vector2d corner =
       camera.project_from_world({scene_.bin.length / 2 + border, -scene_.bin.width / 2 - border, scene_.bin.height});

@@ -7,12 +7,14 @@
 
 namespace tubebin::testing {
 
-inline Scene random_scene(int tube_count, std::uint64_t seed) {
+using namespace scan;
+
+inline scene::Scene random_scene(int tube_count, std::uint64_t seed) {
   Random random(seed);
-  Scene scene;
-  TubeOptions options;
+  scene::Scene scene;
+  tube::TubeOptions options;
   options.bend_angle_max_deg = 45.0;
-  for (const Tube& tube : generate_tubes(tube_count, options, random)) {
+  for (const tube::Tube& tube : tube::generate_tubes(tube_count, options, random)) {
     const Quat rotation = random.rotation();
     const Vec3 middle = rotation * (0.5 * (tube.nodes.front() + tube.nodes.back()));
     const Vec3 place(random.uniform(-0.15, 0.15), random.uniform(-0.1, 0.1), random.uniform(0.02, 0.25));
@@ -22,7 +24,7 @@ inline Scene random_scene(int tube_count, std::uint64_t seed) {
 }
 
 /// The scanner that sees the bin in all of a small image.
-inline void look_closely(Scanner& scanner, int width, int height) {
+inline void look_closely(scene::Scanner& scanner, int width, int height) {
   scanner.width = width;
   scanner.height = height;
   scanner.horizontal_fov_deg = 22.0;

@@ -10,12 +10,12 @@ namespace {
 /// One ray at a time, by the intervals of the solids.
 Hit first_by_intervals(const SceneSolids& solids, const Vec3& direction, double depth_min) {
   Hit first;
-  const auto offer = [&](const Interval& inside, Label label) {
+  const auto offer = [&](const Interval& inside, cloud::Label label) {
     if (inside.empty() || inside.end < depth_min) return;
     if (inside.begin < first.depth || (inside.begin == first.depth && label < first.label))
       first = {inside.begin, label};
   };
-  for (const Box& box : solids.bin) offer(intersect(box, inverse_direction(direction)), 0);
+  for (const scene::Box& box : solids.bin) offer(intersect(box, inverse_direction(direction)), 0);
   for (const auto& [solid, label, bore] : solids.cylinders) offer(solid.intersect(direction), label);
   for (const auto& [solid, label, bore] : solids.spheres) offer(solid.intersect(direction), label);
   return first;
@@ -30,7 +30,7 @@ TEST(RayPacket, EveryLaneTakesWhatItsRayMeetsFirst) {
   SceneSolids solids;
   solids.bin.push_back({Vec3(-1, -1, 2.5), Vec3(1, 1, 2.6)});
   solids.bin.push_back({Vec3(-0.1, -0.1, 1.0), Vec3(0.1, 0.1, 1.2)});
-  for (Label label = 1; label <= 20; ++label) {
+  for (cloud::Label label = 1; label <= 20; ++label) {
     const Vec3 base = random_point(random, 1.5);
     solids.cylinders.push_back({SolidCylinder(base, base + 0.3 * random_point(random, 0.0), 0.03), label});
     solids.spheres.push_back({SolidSphere(base, 0.03), label});
@@ -58,10 +58,10 @@ TEST(RayPacket, EveryLaneTakesWhatItsRayMeetsFirst) {
 }
 
 TEST(RayPacket, LooksThroughPixelsAsTheCameraDoes) {
-  Scanner scanner;
+  scene::Scanner scanner;
   scanner.position = {0.3, -0.2, 1.7};
   scanner.rotation_deg = {12.0, -7.0, 31.0};
-  const Camera camera(scanner);
+  const scene::Camera camera(scanner);
   const RayPacket packet(camera, 701, 333, 0.1);
   for (int lane = 0; lane < kLanes; ++lane)
     EXPECT_EQ(packet.direction(lane), camera.pixel_direction_in_world(701 + lane, 333)) << lane;
@@ -71,14 +71,14 @@ TEST(RayPacket, GivesThePointsOfTheFirstLanes) {
   const std::vector<Vec3> directions = {{0, 0, 1}, {0.5, 0, 1}, {0.01, 0.02, 1}};
   RayPacket packet(directions, 0.1);
   packet.offer(Labelled<SolidSphere>{SolidSphere({0, 0, 1}, 0.25), 7});
-  std::vector<Point> points(3);
-  std::vector<Label> labels(3, 99);
+  std::vector<cloud::Point> points(3);
+  std::vector<cloud::Label> labels(3, 99);
   const Vec3 origin(1, 2, 3);
   packet.get_first_points(origin, points, labels);
-  EXPECT_EQ(points[0], Point(1, 2, 3.75));
+  EXPECT_EQ(points[0], cloud::Point(1, 2, 3.75));
   EXPECT_TRUE(points[1].array().isNaN().all());
-  EXPECT_EQ(points[2], Point((origin + packet.depth(2) * directions[2]).cast<float>()));
-  EXPECT_EQ(labels, (std::vector<Label>{7, 0, 7}));
+  EXPECT_EQ(points[2], cloud::Point((origin + packet.depth(2) * directions[2]).cast<float>()));
+  EXPECT_EQ(labels, (std::vector<cloud::Label>{7, 0, 7}));
 }
 
 TEST(RayPacket, MarksLanesThatBeginInsideOrEnterABore) {

@@ -17,28 +17,28 @@ using testing::random_scene;
 using testing::SphereTracer;
 
 /// An empty bin, so wide that the image shows its floor alone, `distance` below the scanner.
-Scene floor_scene(double distance) {
-  Scene scene;
+scene::Scene floor_scene(double distance) {
+  scene::Scene scene;
   scene.bin.length = scene.bin.width = 40.0;
   scene.scanner.position.z() = distance;
   scene.scanner.range_max = 20.0;
   scene.scanner.width = 240;
   scene.scanner.height = 200;
   scene.scanner.horizontal_fov_deg = 4.0;
-  scene.scanner.region = ScanRegion::full;
+  scene.scanner.region = scene::ScanRegion::full;
   return scene;
 }
 
-double depth_of(const Scene& scene, const Point& point) {
+double depth_of(const scene::Scene& scene, const cloud::Point& point) {
   return (scene.scanner.world_from_scanner().inverse() * point.cast<double>()).z();
 }
 
 /// Depths minus those of the noise-free twin, of pixels that have both.
-std::vector<double> depth_errors(const Scene& scene, std::uint64_t seed) {
-  const Cloud measured = scan(scene, seed).cloud, exact = scan_exactly(scene).cloud;
+std::vector<double> depth_errors(const scene::Scene& scene, std::uint64_t seed) {
+  const cloud::Cloud measured = scan(scene, seed).cloud, exact = scan_exactly(scene).cloud;
   std::vector<double> errors;
   for (std::size_t i = 0; i < exact.size(); ++i)
-    if (is_finite(measured.points[i]) && is_finite(exact.points[i]))
+    if (cloud::is_finite(measured.points[i]) && cloud::is_finite(exact.points[i]))
       errors.push_back(depth_of(scene, measured.points[i]) - depth_of(scene, exact.points[i]));
   return errors;
 }
@@ -50,17 +50,17 @@ double standard_deviation(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-std::size_t finite_points(const Cloud& cloud) {
-  return static_cast<std::size_t>(std::ranges::count_if(cloud.points, is_finite));
+std::size_t finite_points(const cloud::Cloud& cloud) {
+  return static_cast<std::size_t>(std::ranges::count_if(cloud.points, cloud::is_finite));
 }
 
-bool same_bytes(const Cloud& a, const Cloud& b) {
+bool same_bytes(const cloud::Cloud& a, const cloud::Cloud& b) {
   return a.size() == b.size() && a.labels == b.labels && a.colors == b.colors &&
-         std::memcmp(a.points.data(), b.points.data(), a.size() * sizeof(Point)) == 0;
+         std::memcmp(a.points.data(), b.points.data(), a.size() * sizeof(cloud::Point)) == 0;
 }
 
-ScannerEffects all_effects() {
-  ScannerEffects effects;
+scene::ScannerEffects all_effects() {
+  scene::ScannerEffects effects;
   effects.reference_distance = 2.0;
   effects.range_noise = {.sigma = 3e-4, .incidence_gain = 0.05, .correlation_length = 2.0};
   effects.lateral_noise = 0.2;
@@ -75,38 +75,38 @@ ScannerEffects all_effects() {
   return effects;
 }
 
-TEST(ScannerEffects, AllOffIsTheExactScanWhateverTheSeed) {
-  const Scene scene = random_scene(8, 1);
+TEST(scene::ScannerEffects, AllOffIsTheExactScanWhateverTheSeed) {
+  const scene::Scene scene = random_scene(8, 1);
   EXPECT_FALSE(scene.scanner.effects.any());
   EXPECT_TRUE(same_bytes(scan(scene, 1).cloud, scan(scene, 2).cloud));
-  Scene noisy = scene;
+  scene::Scene noisy = scene;
   noisy.scanner.effects = all_effects();
   EXPECT_TRUE(same_bytes(scan_exactly(noisy).cloud, scan(scene).cloud));
 }
 
 /// With an effect too small to change a float the measuring path gives what the exact one does.
-TEST(ScannerEffects, TheMeasuringPathIsTheExactOneInTheLimit) {
-  Scene scene = random_scene(8, 2);
+TEST(scene::ScannerEffects, TheMeasuringPathIsTheExactOneInTheLimit) {
+  scene::Scene scene = random_scene(8, 2);
   look_closely(scene.scanner, 240, 150);
   scene.scanner.effects.range_noise.sigma = 1e-15;
-  const Cloud measured = scan(scene, 5).cloud, exact = scan_exactly(scene).cloud;
+  const cloud::Cloud measured = scan(scene, 5).cloud, exact = scan_exactly(scene).cloud;
   ASSERT_EQ(measured.labels, exact.labels);
   for (std::size_t i = 0; i < exact.size(); ++i) {
-    ASSERT_EQ(is_finite(measured.points[i]), is_finite(exact.points[i]));
-    if (is_finite(exact.points[i])) {
+    ASSERT_EQ(cloud::is_finite(measured.points[i]), cloud::is_finite(exact.points[i]));
+    if (cloud::is_finite(exact.points[i])) {
       ASSERT_LT((measured.points[i] - exact.points[i]).norm(), 1e-6F);
     }
   }
 }
 
-TEST(ScannerEffects, SeedDecidesAllAndRegionsAgree) {
-  Scene scene = random_scene(6, 3);
+TEST(scene::ScannerEffects, SeedDecidesAllAndRegionsAgree) {
+  scene::Scene scene = random_scene(6, 3);
   look_closely(scene.scanner, 240, 150);
   scene.scanner.effects = all_effects();
   const Scan bin = scan(scene, 7);
   EXPECT_TRUE(same_bytes(bin.cloud, scan(scene, 7).cloud));
   EXPECT_FALSE(same_bytes(bin.cloud, scan(scene, 8).cloud));
-  scene.scanner.region = ScanRegion::full;
+  scene.scanner.region = scene::ScanRegion::full;
   const Scan full = scan(scene, 7);
   EXPECT_EQ(full.tube_pixels, bin.tube_pixels);
   for (int row = 0; row < bin.window.height; ++row) {
@@ -114,18 +114,18 @@ TEST(ScannerEffects, SeedDecidesAllAndRegionsAgree) {
       const auto i = static_cast<std::size_t>(row * bin.window.width + column);
       const auto j = static_cast<std::size_t>((row + bin.window.y) * 240 + column + bin.window.x);
       ASSERT_EQ(bin.cloud.labels[i], full.cloud.labels[j]);
-      ASSERT_TRUE(bin.cloud.points[i] == full.cloud.points[j] || !is_finite(bin.cloud.points[i]));
+      ASSERT_TRUE(bin.cloud.points[i] == full.cloud.points[j] || !cloud::is_finite(bin.cloud.points[i]));
     }
   }
   std::vector<std::size_t> counts(7, 0);
   for (std::size_t i = 0; i < bin.cloud.size(); ++i)
-    if (is_finite(bin.cloud.points[i])) ++counts[bin.cloud.labels[i]];
+    if (cloud::is_finite(bin.cloud.points[i])) ++counts[bin.cloud.labels[i]];
   for (std::size_t k = 1; k < counts.size(); ++k) EXPECT_EQ(counts[k], bin.tube_pixels[k - 1]);
 }
 
-TEST(ScannerEffects, RangeNoiseGrowsWithTheSquareOfTheDepth) {
+TEST(scene::ScannerEffects, RangeNoiseGrowsWithTheSquareOfTheDepth) {
   for (const double distance : {0.5, 1.0, 2.0, 4.0}) {
-    Scene scene = floor_scene(distance);
+    scene::Scene scene = floor_scene(distance);
     scene.scanner.effects.range_noise.sigma = 1e-3;
     scene.scanner.effects.range_noise.incidence_gain = 0.05;  // of no effect head-on
     const double expected = 1e-3 * distance * distance;
@@ -134,9 +134,9 @@ TEST(ScannerEffects, RangeNoiseGrowsWithTheSquareOfTheDepth) {
   }
 }
 
-TEST(ScannerEffects, RangeNoiseGrowsWithTheIncidenceAngle) {
+TEST(scene::ScannerEffects, RangeNoiseGrowsWithTheIncidenceAngle) {
   for (const double angle_deg : {30.0, 60.0, 75.0}) {
-    Scene scene = floor_scene(1.0);
+    scene::Scene scene = floor_scene(1.0);
     scene.scanner.horizontal_fov_deg = 0.2;
     scene.scanner.rotation_deg.y() = angle_deg;  // the axis meets the floor at this angle from its normal
     scene.scanner.effects.range_noise.sigma = 1e-4;
@@ -148,9 +148,9 @@ TEST(ScannerEffects, RangeNoiseGrowsWithTheIncidenceAngle) {
   }
 }
 
-TEST(ScannerEffects, RangeNoiseIsCorrelatedBetweenNeighbours) {
+TEST(scene::ScannerEffects, RangeNoiseIsCorrelatedBetweenNeighbours) {
   constexpr double kLength = 3.0;
-  Scene scene = floor_scene(1.0);
+  scene::Scene scene = floor_scene(1.0);
   scene.scanner.effects.range_noise.sigma = 1e-3;
   scene.scanner.effects.range_noise.correlation_length = kLength;
   const std::vector<double> errors = depth_errors(scene, 13);
@@ -173,25 +173,25 @@ TEST(ScannerEffects, RangeNoiseIsCorrelatedBetweenNeighbours) {
 }
 
 /// On a plane that the view meets at an angle, looking beside the pixel changes the depth by its slope.
-TEST(ScannerEffects, LateralNoiseMovesWhereAPixelLooks) {
-  Scene scene = floor_scene(1.0);
+TEST(scene::ScannerEffects, LateralNoiseMovesWhereAPixelLooks) {
+  scene::Scene scene = floor_scene(1.0);
   scene.scanner.horizontal_fov_deg = 1.0;
   scene.scanner.rotation_deg.y() = 45.0;
   scene.scanner.effects.lateral_noise = 0.5;
   const double depth = 1.0 / std::cos(radians(45.0));
-  const double expected = 0.5 * depth / Camera(scene.scanner).focal_length();  // times tan(45 degrees)
+  const double expected = 0.5 * depth / scene::Camera(scene.scanner).focal_length();  // times tan(45 degrees)
   EXPECT_NEAR(standard_deviation(depth_errors(scene, 14)), expected, 0.03 * expected);
 }
 
-TEST(ScannerEffects, QuantizationStepIsEvenInDisparity) {
-  Scene scene = random_scene(5, 4);
+TEST(scene::ScannerEffects, QuantizationStepIsEvenInDisparity) {
+  scene::Scene scene = random_scene(5, 4);
   look_closely(scene.scanner, 240, 150);
   scene.scanner.effects.reference_distance = 1.5;
   scene.scanner.effects.quantization = 1e-3;
-  const Cloud cloud = scan(scene, 15).cloud;
+  const cloud::Cloud cloud = scan(scene, 15).cloud;
   std::size_t checked = 0;
-  for (const Point& point : cloud.points) {
-    if (!is_finite(point)) continue;
+  for (const cloud::Point& point : cloud.points) {
+    if (!cloud::is_finite(point)) continue;
     const double steps = 1.5 * 1.5 / (1e-3 * depth_of(scene, point));
     ASSERT_NEAR(steps, std::round(steps), 1e-3);
     ++checked;
@@ -201,21 +201,21 @@ TEST(ScannerEffects, QuantizationStepIsEvenInDisparity) {
 }
 
 /// Lit by brute force: a sphere tracing scanner at the projector looks at every point.
-TEST(ScannerEffects, ShadowIsWhereTheProjectorSeesSomethingElse) {
-  Scene scene = random_scene(8, 5);
+TEST(scene::ScannerEffects, ShadowIsWhereTheProjectorSeesSomethingElse) {
+  scene::Scene scene = random_scene(8, 5);
   look_closely(scene.scanner, 160, 100);
   scene.scanner.rotation_deg = {3.0, -4.0, 20.0};
-  ProjectorOptions& projector = scene.scanner.effects.projector;
+  scene::ProjectorOptions& projector = scene.scanner.effects.projector;
   projector = {.enabled = true, .position = {0.6, 0.1, 0.05}, .horizontal_fov_deg = 12.0, .vertical_fov_deg = 8.0};
-  const Cloud lit = scan(scene, 16).cloud, exact = scan_exactly(scene).cloud;
-  Scene from_projector = scene;
+  const cloud::Cloud lit = scan(scene, 16).cloud, exact = scan_exactly(scene).cloud;
+  scene::Scene from_projector = scene;
   from_projector.scanner.position = scene.scanner.world_from_scanner() * projector.position;
   const Vec3 focus = scene.scanner.world_from_scanner() * Vec3(0, 0, projector.focus_distance);
   const Vec3 axis = (focus - from_projector.scanner.position).normalized();
   const SphereTracer tracer(from_projector);
   int in_shadow = 0, out_of_field = 0, bright = 0, wrong = 0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
-    if (!is_finite(exact.points[i])) continue;
+    if (!cloud::is_finite(exact.points[i])) continue;
     const Vec3 ray = exact.points[i].cast<double>() - from_projector.scanner.position;
     const double off_axis_deg = degrees(std::acos(ray.normalized().dot(axis)));
     // Beyond the field's corners for sure, or within its narrower half; in between its shape decides.
@@ -223,13 +223,13 @@ TEST(ScannerEffects, ShadowIsWhereTheProjectorSeesSomethingElse) {
     const double miss = traced.found ? (traced.point - exact.points[i].cast<double>()).norm() : 1.0;
     if (off_axis_deg > 7.3) {
       ++out_of_field;
-      wrong += is_finite(lit.points[i]);
+      wrong += cloud::is_finite(lit.points[i]);
     } else if (off_axis_deg < 3.9 && miss > 1e-2) {
       ++in_shadow;
-      wrong += is_finite(lit.points[i]);
+      wrong += cloud::is_finite(lit.points[i]);
     } else if (off_axis_deg < 3.9 && miss < 1e-4) {
       ++bright;
-      wrong += !is_finite(lit.points[i]);
+      wrong += !cloud::is_finite(lit.points[i]);
     }
   }
   EXPECT_GT(in_shadow, 300);
@@ -239,9 +239,9 @@ TEST(ScannerEffects, ShadowIsWhereTheProjectorSeesSomethingElse) {
   EXPECT_LE(wrong, 3);
 }
 
-TEST(ScannerEffects, DropOutsFollowTheSignal) {
+TEST(scene::ScannerEffects, DropOutsFollowTheSignal) {
   for (const double threshold : {0.2, 0.25, 0.3}) {
-    Scene scene = floor_scene(2.0);
+    scene::Scene scene = floor_scene(2.0);
     scene.scanner.effects.dropouts = {.signal_min = threshold, .signal_spread = 0.3, .bin_reflectivity = 0.9};
     // Head-on from two metres, reference one: signal 0.9 / 4. Lost where a normal is below log(threshold / signal) / 0.3.
     const double expected = 0.5 * std::erfc(-std::log(threshold / 0.225) / 0.3 / std::sqrt(2.0));
@@ -250,8 +250,8 @@ TEST(ScannerEffects, DropOutsFollowTheSignal) {
   }
 }
 
-TEST(ScannerEffects, GrazingSurfacesDropOutSharplyWithoutSpread) {
-  Scene scene = floor_scene(1.0);
+TEST(scene::ScannerEffects, GrazingSurfacesDropOutSharplyWithoutSpread) {
+  scene::Scene scene = floor_scene(1.0);
   scene.scanner.horizontal_fov_deg = 0.2;
   scene.scanner.effects.dropouts.signal_min = 0.1;
   for (const double angle_deg : {50.0, 58.0, 66.0, 74.0}) {
@@ -261,28 +261,28 @@ TEST(ScannerEffects, GrazingSurfacesDropOutSharplyWithoutSpread) {
   }
 }
 
-TEST(ScannerEffects, GlareIsADiscAroundTheMirrorDirection) {
-  Scene scene = floor_scene(2.0);
+TEST(scene::ScannerEffects, GlareIsADiscAroundTheMirrorDirection) {
+  scene::Scene scene = floor_scene(2.0);
   scene.scanner.horizontal_fov_deg = 10.0;
   scene.scanner.effects.dropouts.bin_glare_angle_deg = 2.0;
   const std::size_t lost = 240u * 200u - finite_points(scan(scene, 19).cloud);
-  const double radius = std::tan(radians(2.0)) * Camera(scene.scanner).focal_length();  // pixels
+  const double radius = std::tan(radians(2.0)) * scene::Camera(scene.scanner).focal_length();  // pixels
   const double expected = std::numbers::pi * radius * radius;
   EXPECT_NEAR(static_cast<double>(lost), expected, 0.02 * expected);
 }
 
 /// A point at an edge lies between the surfaces that its footprint sees, and elsewhere on its surface.
-TEST(ScannerEffects, MixedPixelsLieBetweenTheSurfacesOfTheirFootprint) {
-  Scene scene = random_scene(8, 6);
+TEST(scene::ScannerEffects, MixedPixelsLieBetweenTheSurfacesOfTheirFootprint) {
+  scene::Scene scene = random_scene(8, 6);
   look_closely(scene.scanner, 120, 76);
-  scene.scanner.region = ScanRegion::full;
+  scene.scanner.region = scene::ScanRegion::full;
   scene.scanner.effects.mixed_pixels = {.share = 1.0, .footprint = 1.0, .edge_step = 0.01};
-  const Cloud mixed = scan(scene, 20).cloud, exact = scan_exactly(scene).cloud;
-  const Camera camera(scene.scanner);
+  const cloud::Cloud mixed = scan(scene, 20).cloud, exact = scan_exactly(scene).cloud;
+  const scene::Camera camera(scene.scanner);
   const SphereTracer tracer(scene);
   int between = 0, wrong = 0;
   for (std::size_t i = 0; i < mixed.size(); ++i) {
-    if (!is_finite(mixed.points[i])) continue;
+    if (!cloud::is_finite(mixed.points[i])) continue;
     if ((mixed.points[i] - exact.points[i]).norm() < 1e-5F) {
       wrong += mixed.labels[i] != exact.labels[i];
       continue;
@@ -307,8 +307,8 @@ TEST(ScannerEffects, MixedPixelsLieBetweenTheSurfacesOfTheirFootprint) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(ScannerEffects, OutliersAreAsManyAndAsFarAsAsked) {
-  Scene scene = floor_scene(1.0);
+TEST(scene::ScannerEffects, OutliersAreAsManyAndAsFarAsAsked) {
+  scene::Scene scene = floor_scene(1.0);
   scene.scanner.effects.outliers = {.share = 0.1, .spread = 0.05};
   std::vector<double> off;
   for (const double error : depth_errors(scene, 21))
@@ -318,15 +318,15 @@ TEST(ScannerEffects, OutliersAreAsManyAndAsFarAsAsked) {
   for (const double error : off) ASSERT_LE(std::abs(error), 0.05 + 1e-6);
 }
 
-TEST(ScannerEffects, CalibrationErrorIsOneAffineMapOfTheExactCloud) {
-  Scene scene = random_scene(5, 7);
+TEST(scene::ScannerEffects, CalibrationErrorIsOneAffineMapOfTheExactCloud) {
+  scene::Scene scene = random_scene(5, 7);
   look_closely(scene.scanner, 120, 76);
   scene.scanner.effects.calibration = {.position = {0.002, -0.001, 0.003}, .rotation_deg = {0, 0, 0.5}, .focal = 0.01};
-  const Cloud off = scan(scene, 22).cloud, exact = scan_exactly(scene).cloud;
+  const cloud::Cloud off = scan(scene, 22).cloud, exact = scan_exactly(scene).cloud;
   const Pose world_from_scanner = scene.scanner.world_from_scanner();
   const double c = std::cos(radians(0.5)), s = std::sin(radians(0.5));
   for (std::size_t i = 0; i < exact.size(); ++i) {
-    if (!is_finite(exact.points[i])) continue;
+    if (!cloud::is_finite(exact.points[i])) continue;
     const Vec3 p = world_from_scanner.inverse() * exact.points[i].cast<double>();
     const double x = p.x() / 1.01, y = p.y() / 1.01;
     const Vec3 expected(c * x - s * y + 0.002, s * x + c * y - 0.001, p.z() + 0.003);

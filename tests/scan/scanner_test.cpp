@@ -20,17 +20,18 @@ using testing::worst_surface_distance;
 constexpr double kSurfaceTolerance = 5e-6;  // metres: what a point may be off its surface
 
 /// Every pixel of the whole image has what sphere tracing finds there; returns how many were hits.
-int expect_agreement_with_sphere_tracing(Scene scene) {
-  scene.scanner.region = ScanRegion::full;
-  const Cloud cloud = scan(scene).cloud;
-  const Camera camera(scene.scanner);
+int expect_agreement_with_sphere_tracing(scene::Scene scene) {
+  scene.scanner.region = scene::ScanRegion::full;
+  const cloud::Cloud cloud = scan(scene).cloud;
+  const scene::Camera camera(scene.scanner);
   const SphereTracer tracer(scene);
   int hits = 0, wrong_labels = 0, wrong_places = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const int column = static_cast<int>(i % cloud.width), row = static_cast<int>(i / cloud.width);
     const auto traced = tracer.trace(camera.pixel_direction_in_world(column, row));
     hits += traced.found ? 1 : 0;
-    if (traced.found != is_finite(cloud.points[i]) || (traced.found && traced.label != cloud.labels[i])) ++wrong_labels;
+    if (traced.found != cloud::is_finite(cloud.points[i]) || (traced.found && traced.label != cloud.labels[i]))
+      ++wrong_labels;
     else if (traced.found && (cloud.points[i].cast<double>() - traced.point).norm() > 2e-5) ++wrong_places;
   }
   EXPECT_EQ(wrong_labels, 0);
@@ -38,24 +39,24 @@ int expect_agreement_with_sphere_tracing(Scene scene) {
   return hits;
 }
 
-TEST(Scanner, AgreesWithSphereTracingInRandomScenes) {
+TEST(scene::Scanner, AgreesWithSphereTracingInRandomScenes) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    Scene scene = random_scene(8, seed);
+    scene::Scene scene = random_scene(8, seed);
     look_closely(scene.scanner, 120, 76);
     EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 4000);
   }
 }
 
-TEST(Scanner, AgreesWithSphereTracingWhenTiltedAndTurned) {
-  Scene scene = random_scene(8, 4);
+TEST(scene::Scanner, AgreesWithSphereTracingWhenTiltedAndTurned) {
+  scene::Scene scene = random_scene(8, 4);
   look_closely(scene.scanner, 120, 76);
   scene.scanner.position = {1.0, -0.15, 1.2};
   scene.scanner.rotation_deg = {20.0, 37.0, 20.0};
   EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 1000);
 }
 
-TEST(Scanner, AgreesWithSphereTracingAmongTheTubes) {
-  Scene scene = random_scene(12, 5);
+TEST(scene::Scanner, AgreesWithSphereTracingAmongTheTubes) {
+  scene::Scene scene = random_scene(12, 5);
   look_closely(scene.scanner, 120, 76);
   scene.scanner.horizontal_fov_deg = 120.0;
   scene.scanner.position = {0.02, 0.01, 0.12};
@@ -64,12 +65,13 @@ TEST(Scanner, AgreesWithSphereTracingAmongTheTubes) {
   EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 4000);
 }
 
-TEST(Scanner, LooksIntoTheOpenEndsOfHollowTubes) {
+TEST(scene::Scanner, LooksIntoTheOpenEndsOfHollowTubes) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-    Scene scene = random_scene(5, seed);
-    for (PlacedTube& placed : scene.tubes) placed.tube.wall_thickness = 0.002;
+    scene::Scene scene = random_scene(5, seed);
+    for (scene::PlacedTube& placed : scene.tubes) placed.tube.wall_thickness = 0.002;
     // A straight pipe that stands up shows the floor through it, one that leans its bore.
-    Tube pipe{.radius = 0.02, .wall_thickness = 0.003, .mass = 1.0, .nodes = {{0, 0, 0}, {0, 0, 0.1}}, .cylinders = {}};
+    tube::Tube pipe{
+        .radius = 0.02, .wall_thickness = 0.003, .mass = 1.0, .nodes = {{0, 0, 0}, {0, 0, 0.1}}, .cylinders = {}};
     pipe.cylinders = {{0, 1, 0}};
     for (const double lean_deg : {0.0, 20.0})
       scene.tubes.push_back(
@@ -79,31 +81,31 @@ TEST(Scanner, LooksIntoTheOpenEndsOfHollowTubes) {
   }
 }
 
-TEST(Scanner, RadiusVariesAlongTubes) {
+TEST(scene::Scanner, RadiusVariesAlongTubes) {
   for (const double wall : {0.0, 0.001}) {
-    Scene scene = random_scene(6, 14);
+    scene::Scene scene = random_scene(6, 14);
     Random random(3);
-    for (PlacedTube& placed : scene.tubes) {
+    for (scene::PlacedTube& placed : scene.tubes) {
       placed.tube.wall_thickness = wall;
-      for (Cylinder& cylinder : placed.tube.cylinders) cylinder.radius = random.uniform(0.008, 0.016);
+      for (tube::Cylinder& cylinder : placed.tube.cylinders) cylinder.radius = random.uniform(0.008, 0.016);
     }
     look_closely(scene.scanner, 120, 76);
     EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 4000);
   }
 }
 
-TEST(Scanner, HollowTubesAreOpenOnlyAtTheirEnds) {
-  Scene hollow = random_scene(8, 7);
+TEST(scene::Scanner, HollowTubesAreOpenOnlyAtTheirEnds) {
+  scene::Scene hollow = random_scene(8, 7);
   look_closely(hollow.scanner, 480, 304);
-  const Scene solid = hollow;
-  for (PlacedTube& placed : hollow.tubes) placed.tube.wall_thickness = 0.001;
-  const Cloud with_bores = scan(hollow).cloud, without = scan(solid).cloud;
+  const scene::Scene solid = hollow;
+  for (scene::PlacedTube& placed : hollow.tubes) placed.tube.wall_thickness = 0.001;
+  const cloud::Cloud with_bores = scan(hollow).cloud, without = scan(solid).cloud;
   ASSERT_EQ(with_bores.size(), without.size());
   std::size_t deeper = 0;
   for (std::size_t i = 0; i < without.size(); ++i) {
-    if (!is_finite(without.points[i]) || with_bores.points[i] == without.points[i]) continue;
+    if (!cloud::is_finite(without.points[i]) || with_bores.points[i] == without.points[i]) continue;
     ++deeper;
-    const PlacedTube& tube = hollow.tubes[without.labels[i] - 1];  // only tubes have openings
+    const scene::PlacedTube& tube = hollow.tubes[without.labels[i] - 1];  // only tubes have openings
     const Vec3 at_the_end = without.points[i].cast<double>();
     const double to_an_end =
         std::min((at_the_end - tube.node_in_world(0)).norm(),
@@ -114,8 +116,8 @@ TEST(Scanner, HollowTubesAreOpenOnlyAtTheirEnds) {
   EXPECT_GT(deeper, 100u);
 }
 
-TEST(Scanner, SeesTheInnerSurfaceFromInsideATube) {
-  Scene scene = random_scene(3, 6);
+TEST(scene::Scanner, SeesTheInnerSurfaceFromInsideATube) {
+  scene::Scene scene = random_scene(3, 6);
   look_closely(scene.scanner, 60, 40);
   scene.scanner.horizontal_fov_deg = 100.0;
   scene.scanner.range_min = 0.0;
@@ -128,75 +130,76 @@ TEST(Scanner, SeesTheInnerSurfaceFromInsideATube) {
   EXPECT_EQ(inside.tube_pixels[0], 60u * 40u);
 }
 
-TEST(Scanner, SeesTheBinsOuterSurfaceFromInsideAWall) {
-  Scene scene;
+TEST(scene::Scanner, SeesTheBinsOuterSurfaceFromInsideAWall) {
+  scene::Scene scene;
   look_closely(scene.scanner, 60, 40);
   scene.scanner.position = {scene.bin.length / 2 + scene.bin.wall_thickness / 2, 0.0, 0.1};
   scene.scanner.range_min = 0.0;
   const Scan down = scan(scene);  // through the wall and, without a seam, through the floor slab below it
-  EXPECT_EQ(down.window, (PixelWindow{0, 0, 60, 40}));
-  for (const Point& point : down.cloud.points) EXPECT_GT(std::abs(point.z()), 1e-6F);
+  EXPECT_EQ(down.window, (scene::PixelWindow{0, 0, 60, 40}));
+  for (const cloud::Point& point : down.cloud.points) EXPECT_GT(std::abs(point.z()), 1e-6F);
   EXPECT_LT(worst_surface_distance(scene, down.cloud), kSurfaceTolerance);
 }
 
-TEST(Scanner, NearPlaneOpensWhatReachesThroughIt) {
-  Scene scene = random_scene(8, 9);
+TEST(scene::Scanner, NearPlaneOpensWhatReachesThroughIt) {
+  scene::Scene scene = random_scene(8, 9);
   look_closely(scene.scanner, 120, 76);
   scene.scanner.range_min = 1.87;  // 0.13 m above the floor
   EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 2000);
 }
 
-TEST(Scanner, RangeIsInclusiveAndAlongTheOpticalAxis) {
-  Scene scene;
+TEST(scene::Scanner, RangeIsInclusiveAndAlongTheOpticalAxis) {
+  scene::Scene scene;
   scene.scanner.range_max = 2.0;  // the floor, exactly, also in the corners of the image
   const Scan whole = scan(scene);
   std::size_t floor_points = 0;
-  for (const Point& point : whole.cloud.points) floor_points += is_finite(point) && point.z() < 1e-6F ? 1 : 0;
-  const double pixels_per_metre = Camera(scene.scanner).focal_length() / 2.0;
+  for (const cloud::Point& point : whole.cloud.points)
+    floor_points += cloud::is_finite(point) && point.z() < 1e-6F ? 1 : 0;
+  const double pixels_per_metre = scene::Camera(scene.scanner).focal_length() / 2.0;
   const double expected = 0.55 * 0.37 * pixels_per_metre * pixels_per_metre;
   EXPECT_NEAR(static_cast<double>(floor_points), expected, 0.01 * expected);
 
   scene.scanner.range_max = 1.9999;
-  for (const Point& point : scan(scene).cloud.points) {
-    ASSERT_TRUE(!is_finite(point) || point.z() > 1e-5F);
+  for (const cloud::Point& point : scan(scene).cloud.points) {
+    ASSERT_TRUE(!cloud::is_finite(point) || point.z() > 1e-5F);
   }
 }
 
-TEST(Scanner, FloorAtTheRangesEndSurvivesEveryTurnAboutTheAxis) {
-  Scene scene;
+TEST(scene::Scanner, FloorAtTheRangesEndSurvivesEveryTurnAboutTheAxis) {
+  scene::Scene scene;
   look_closely(scene.scanner, 60, 40);
   scene.scanner.range_max = 2.0;
   for (int angle = 0; angle < 360; angle += 7) {
     scene.scanner.rotation_deg = {0.0, 0.0, static_cast<double>(angle)};
-    const Cloud cloud = scan(scene).cloud;
+    const cloud::Cloud cloud = scan(scene).cloud;
     const std::size_t middle = cloud.size() / 2 + cloud.width / 2;
-    EXPECT_TRUE(is_finite(cloud.points[middle])) << angle << " degrees";
+    EXPECT_TRUE(cloud::is_finite(cloud.points[middle])) << angle << " degrees";
   }
 }
 
-TEST(Scanner, EveryPointLiesOnItsSurfaceAndItsPixelsRay) {
-  const Scene scene = random_scene(10, 11);
+TEST(scene::Scanner, EveryPointLiesOnItsSurfaceAndItsPixelsRay) {
+  const scene::Scene scene = random_scene(10, 11);
   const Scan result = scan(scene);
   EXPECT_LT(worst_surface_distance(scene, result.cloud), kSurfaceTolerance);
-  const Camera camera(scene.scanner);
+  const scene::Camera camera(scene.scanner);
   for (std::size_t i = 0; i < result.cloud.size(); ++i) {
-    if (!is_finite(result.cloud.points[i])) continue;
+    if (!cloud::is_finite(result.cloud.points[i])) continue;
     const Eigen::Vector2d pixel = camera.project_from_world(result.cloud.points[i].cast<double>());
     ASSERT_NEAR(pixel.x(), result.window.x + static_cast<int>(i % result.cloud.width) + 0.5, 2e-3);
     ASSERT_NEAR(pixel.y(), result.window.y + static_cast<int>(i / result.cloud.width) + 0.5, 2e-3);
   }
 }
 
-TEST(Scanner, RegionsShowTheSameSurfaces) {
-  Scene scene = random_scene(10, 12);
+TEST(scene::Scanner, RegionsShowTheSameSurfaces) {
+  scene::Scene scene = random_scene(10, 12);
   const Scan bin = scan(scene);
-  scene.scanner.region = ScanRegion::full;
+  scene.scanner.region = scene::ScanRegion::full;
   const Scan full = scan(scene);
-  scene.scanner.region = ScanRegion::tubes;
+  scene.scanner.region = scene::ScanRegion::tubes;
   const Scan tubes = scan(scene);
 
   ASSERT_EQ(full.cloud.size(), 1920u * 1200u);
-  ASSERT_EQ(full.window, (PixelWindow{0, 0, 1920, 1200}));
+  ASSERT_EQ(full.window, (scene::PixelWindow{0, 0, 1920, 1200}));
   EXPECT_EQ(tubes.cloud.height, 1u);
   EXPECT_EQ(tubes.cloud.width, tubes.cloud.size());
   EXPECT_LT(bin.cloud.size(), full.cloud.size() / 8);
@@ -205,14 +208,14 @@ TEST(Scanner, RegionsShowTheSameSurfaces) {
   for (std::size_t i = 0; i < full.cloud.size(); ++i) {
     const int column = static_cast<int>(i % 1920) - bin.window.x, row = static_cast<int>(i / 1920) - bin.window.y;
     if (column < 0 || row < 0 || column >= bin.window.width || row >= bin.window.height) {
-      ASSERT_FALSE(is_finite(full.cloud.points[i]));
+      ASSERT_FALSE(cloud::is_finite(full.cloud.points[i]));
       continue;
     }
     const std::size_t j = static_cast<std::size_t>(row) * bin.cloud.width + static_cast<std::size_t>(column);
-    ASSERT_EQ(is_finite(full.cloud.points[i]), is_finite(bin.cloud.points[j]));
+    ASSERT_EQ(cloud::is_finite(full.cloud.points[i]), cloud::is_finite(bin.cloud.points[j]));
     ASSERT_EQ(full.cloud.labels[i], bin.cloud.labels[j]);
     ASSERT_EQ(full.cloud.colors[i], bin.cloud.colors[j]);
-    if (is_finite(full.cloud.points[i])) {
+    if (cloud::is_finite(full.cloud.points[i])) {
       ASSERT_EQ(full.cloud.points[i], bin.cloud.points[j]);
     }
     if (full.cloud.labels[i] == 0) continue;
@@ -227,8 +230,8 @@ TEST(Scanner, RegionsShowTheSameSurfaces) {
 }
 
 /// The smallest window that has all that the image shows, found pixel by pixel without the scanner.
-PixelWindow traced_window(const Scene& scene) {
-  const Camera camera(scene.scanner);
+scene::PixelWindow traced_window(const scene::Scene& scene) {
+  const scene::Camera camera(scene.scanner);
   const SphereTracer tracer(scene);
   int left = camera.width(), right = -1, top = camera.height(), bottom = -1;
   for (int row = 0; row < camera.height(); ++row) {
@@ -244,7 +247,7 @@ PixelWindow traced_window(const Scene& scene) {
 }
 
 /// `slack` more pixels on a side are allowed: the tip of a corner may lie between pixel centres.
-void expect_window_covers(const PixelWindow& window, const PixelWindow& traced, int slack) {
+void expect_window_covers(const scene::PixelWindow& window, const scene::PixelWindow& traced, int slack) {
   EXPECT_LE(window.x, traced.x);
   EXPECT_LE(window.y, traced.y);
   EXPECT_GE(window.x + window.width, traced.x + traced.width);
@@ -253,8 +256,8 @@ void expect_window_covers(const PixelWindow& window, const PixelWindow& traced, 
   EXPECT_LE(window.height, traced.height + 2 * slack);
 }
 
-TEST(Scanner, WindowIsTheSmallestThatShowsBinAndTubes) {
-  Scene scene = random_scene(6, 13);
+TEST(scene::Scanner, WindowIsTheSmallestThatShowsBinAndTubes) {
+  scene::Scene scene = random_scene(6, 13);
   scene.scanner.width = 192;
   scene.scanner.height = 120;
   expect_window_covers(scan(scene).window, traced_window(scene), 0);
@@ -266,8 +269,8 @@ TEST(Scanner, WindowIsTheSmallestThatShowsBinAndTubes) {
   expect_window_covers(scan(scene).window, traced_window(scene), 5);
 }
 
-TEST(Scanner, WindowOfTubesAloneIsTheirs) {
-  Scene scene = random_scene(6, 18);
+TEST(scene::Scanner, WindowOfTubesAloneIsTheirs) {
+  scene::Scene scene = random_scene(6, 18);
   scene.bin.length = scene.bin.width = 0.01;  // so small that the tubes alone decide
   scene.bin.height = 0.001;
   scene.scanner.width = 192;
@@ -275,19 +278,19 @@ TEST(Scanner, WindowOfTubesAloneIsTheirs) {
   for (const double pitch : {0.0, 20.0}) {
     scene.scanner.rotation_deg.y() = pitch;
     scene.scanner.position.x() = 2.0 * std::tan(radians(pitch));
-    scene.scanner.region = ScanRegion::tubes;
+    scene.scanner.region = scene::ScanRegion::tubes;
     expect_window_covers(scan(scene).window, traced_window(scene), 1);
   }
 }
 
-TEST(Scanner, HasOneColourALabel) {
-  const Scene scene = random_scene(10, 14);
+TEST(scene::Scanner, HasOneColourALabel) {
+  const scene::Scene scene = random_scene(10, 14);
   const Scan result = scan(scene);
-  const std::vector<Color> colors = label_colors(10);
+  const std::vector<cloud::Color> colors = cloud::label_colors(10);
   std::vector<std::size_t> counts(11, 0);
   for (std::size_t i = 0; i < result.cloud.size(); ++i) {
-    if (!is_finite(result.cloud.points[i])) {
-      ASSERT_EQ(result.cloud.colors[i], kNullColor);
+    if (!cloud::is_finite(result.cloud.points[i])) {
+      ASSERT_EQ(result.cloud.colors[i], cloud::kNullColor);
       ASSERT_EQ(result.cloud.labels[i], 0u);
       continue;
     }
@@ -298,12 +301,12 @@ TEST(Scanner, HasOneColourALabel) {
   for (std::size_t k = 1; k <= 10; ++k) EXPECT_EQ(counts[k], result.tube_pixels[k - 1]);
 }
 
-TEST(Scanner, ImagesOfManySizes) {
-  Scene scene = random_scene(5, 15);
+TEST(scene::Scanner, ImagesOfManySizes) {
+  scene::Scene scene = random_scene(5, 15);
   for (const auto& [width, height] : {std::pair{1, 1}, {64, 40}, {4096, 3000}}) {
     scene.scanner.width = width;
     scene.scanner.height = height;
-    scene.scanner.region = ScanRegion::full;
+    scene.scanner.region = scene::ScanRegion::full;
     const Scan result = scan(scene);
     ASSERT_EQ(result.cloud.size(), static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     EXPECT_EQ(result.cloud.width, static_cast<std::uint32_t>(width));
@@ -320,24 +323,24 @@ TEST(Scanner, ImagesOfManySizes) {
   EXPECT_NEAR(static_cast<double>(scan(scene).tube_pixels[0]), large / 64.0, 0.03 * large / 64.0);
 }
 
-TEST(Scanner, LooksAwayFromEverything) {
-  Scene scene = random_scene(3, 16);
+TEST(scene::Scanner, LooksAwayFromEverything) {
+  scene::Scene scene = random_scene(3, 16);
   scene.scanner.rotation_deg = {180.0, 0.0, 0.0};
   const Scan away = scan(scene);
-  EXPECT_EQ(away.window, PixelWindow{});
+  EXPECT_EQ(away.window, scene::PixelWindow{});
   EXPECT_EQ(away.cloud.size(), 0u);
   EXPECT_EQ(away.tube_pixels, std::vector<std::size_t>(3, 0));
 }
 
-TEST(Scanner, BranchingTubesRingsAndLoneNodes) {
-  Scene scene;
+TEST(scene::Scanner, BranchingTubesRingsAndLoneNodes) {
+  scene::Scene scene;
   look_closely(scene.scanner, 120, 76);
-  Tube tube;
+  tube::Tube tube;
   tube.radius = 0.0125;
   tube.nodes = {{0, 0, 0.1}, {0.1, 0, 0.1}, {-0.07, 0.07, 0.12}, {-0.07, -0.07, 0.08}, {0.15, 0.1, 0.05}};
   tube.cylinders = {{0, 1, 0}, {0, 2, 0}, {0, 3, 0}};
   scene.tubes.push_back({tube, Pose::Identity()});
-  Tube ring = tube;
+  tube::Tube ring = tube;
   ring.nodes = {{-0.2, 0.1, 0.1}, {-0.1, 0.12, 0.1}, {-0.15, 0.17, 0.15}};
   ring.cylinders = {{0, 1, 0}, {1, 2, 1}, {2, 0, 2}};
   scene.tubes.push_back({ring, Pose::Identity()});
@@ -345,11 +348,12 @@ TEST(Scanner, BranchingTubesRingsAndLoneNodes) {
   for (const std::size_t pixels : scan(scene).tube_pixels) EXPECT_GT(pixels, 50u);
 }
 
-TEST(Scanner, SameSceneSameBytes) {
-  const Scene scene = random_scene(10, 17);
+TEST(scene::Scanner, SameSceneSameBytes) {
+  const scene::Scene scene = random_scene(10, 17);
   const Scan first = scan(scene), second = scan(scene);
   ASSERT_EQ(first.cloud.size(), second.cloud.size());
-  EXPECT_EQ(std::memcmp(first.cloud.points.data(), second.cloud.points.data(), first.cloud.size() * sizeof(Point)), 0);
+  EXPECT_EQ(
+      std::memcmp(first.cloud.points.data(), second.cloud.points.data(), first.cloud.size() * sizeof(cloud::Point)), 0);
   EXPECT_EQ(first.cloud.labels, second.cloud.labels);
 }
 

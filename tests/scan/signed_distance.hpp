@@ -14,6 +14,8 @@
 
 namespace tubebin::testing {
 
+using namespace scan;
+
 inline double cylinder_distance(const Vec3& p, const Vec3& a, const Vec3& b, double radius) {
   const Vec3 axis = (b - a).normalized();
   const Vec3 from_middle = p - (a + b) / 2.0;
@@ -32,12 +34,12 @@ inline double box_distance(const Vec3& p, const Vec3& low, const Vec3& high) {
 /// The union of a tube's cylinders and joint spheres, in the world, thinner by `wall`; free ends are longer by `excess`.
 class TubeUnion {
  public:
-  TubeUnion(const PlacedTube& placed, double wall, double excess) {
-    const Tube& tube = placed.tube;
+  TubeUnion(const scene::PlacedTube& placed, double wall, double excess) {
+    const tube::Tube& tube = placed.tube;
     const std::vector<double> radii = tube.node_radii();
     const std::vector<int> degrees = tube.node_degrees();
     const auto is_free = [&](int node) { return degrees[static_cast<std::size_t>(node)] == 1; };
-    for (const Cylinder& cylinder : tube.cylinders) {
+    for (const tube::Cylinder& cylinder : tube.cylinders) {
       const Vec3 a = placed.node_in_world(cylinder.node_a), b = placed.node_in_world(cylinder.node_b);
       const Vec3 beyond = excess * (b - a).normalized();
       rods_.push_back({is_free(cylinder.node_a) ? Vec3(a - beyond) : a, is_free(cylinder.node_b) ? Vec3(b + beyond) : b,
@@ -72,7 +74,7 @@ class TubeUnion {
 /// opening.
 class TubeSolid {
  public:
-  explicit TubeSolid(const PlacedTube& placed) : outside_(placed, 0.0, 0.0) {
+  explicit TubeSolid(const scene::PlacedTube& placed) : outside_(placed, 0.0, 0.0) {
     constexpr double kBeyondTheEnd = 0.001;
     if (placed.tube.wall_thickness > 0.0) bore_.emplace(placed, placed.tube.wall_thickness, kBeyondTheEnd);
     for (const Vec3& node : placed.tube.nodes) center_ += placed.world_from_tube * node;
@@ -99,7 +101,7 @@ class TubeSolid {
 
 /// The bin is what is left of its outer block when the space inside and above the floor is taken out; the
 /// distance to it is exact outside and on the surface.
-inline double bin_distance(const Vec3& p, const Bin& bin) {
+inline double bin_distance(const Vec3& p, const scene::Bin& bin) {
   const double x = bin.length / 2, y = bin.width / 2, w = bin.wall_thickness, h = bin.height;
   const double walls = std::min(
       {box_distance(p, {-x - w, -y - w, -w}, {-x, y + w, h}), box_distance(p, {x, -y - w, -w}, {x + w, y + w, h}),
@@ -109,16 +111,16 @@ inline double bin_distance(const Vec3& p, const Bin& bin) {
 
 struct TracedHit {
   bool found = false;
-  Label label = 0;
+  cloud::Label label = 0;
   Vec3 point = Vec3::Zero();
 };
 
 class SphereTracer {
  public:
-  explicit SphereTracer(const Scene& scene)
+  explicit SphereTracer(const scene::Scene& scene)
       : bin_(scene.bin), scanner_(scene.scanner), tubes_(scene.tubes.begin(), scene.tubes.end()) {}
 
-  double distance_to(const Vec3& p, Label label) const {
+  double distance_to(const Vec3& p, cloud::Label label) const {
     return label == 0 ? bin_distance(p, bin_) : tubes_[label - 1].distance(p);
   }
 
@@ -139,12 +141,12 @@ class SphereTracer {
  private:
   struct Nearest {
     double distance;
-    Label label;
+    cloud::Label label;
   };
 
   Nearest nearest_surface(const Vec3& p) const {
     Nearest nearest = {std::abs(distance_to(p, 0)), 0};
-    for (Label label = 1; label <= tubes_.size(); ++label) {
+    for (cloud::Label label = 1; label <= tubes_.size(); ++label) {
       if (tubes_[label - 1].least_distance(p) >= nearest.distance) continue;
       const double distance = std::abs(distance_to(p, label));
       if (distance < nearest.distance) nearest = {distance, label};
@@ -152,17 +154,17 @@ class SphereTracer {
     return nearest;
   }
 
-  Bin bin_;
-  Scanner scanner_;
+  scene::Bin bin_;
+  scene::Scanner scanner_;
   std::vector<TubeSolid> tubes_;
 };
 
 /// The largest distance, in metres, of a finite point from the surface that its label names.
-inline double worst_surface_distance(const Scene& scene, const Cloud& cloud) {
+inline double worst_surface_distance(const scene::Scene& scene, const cloud::Cloud& cloud) {
   const SphereTracer tracer(scene);
   double worst = 0.0;
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (is_finite(cloud.points[i]))
+    if (cloud::is_finite(cloud.points[i]))
       worst = std::max(worst, std::abs(tracer.distance_to(cloud.points[i].cast<double>(), cloud.labels[i])));
   return worst;
 }

@@ -33,12 +33,12 @@ SceneRecord make_record(int tube_count) {
   record.scene.scanner.rotation_deg = {10.0, -5.0, 33.3};
   record.scene.scanner.region = ScanRegion::full;
   record.window = {700, 400, 500, 333};
-  for (Tube& tube : generate_tubes(tube_count, TubeOptions{}, random)) {
+  for (tube::Tube& tube : tube::generate_tubes(tube_count, tube::TubeOptions{}, random)) {
     const Vec3 place(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 0.05);
     record.scene.tubes.push_back({std::move(tube), make_pose(random.rotation(), place)});
     record.tube_pixels.push_back(record.tube_pixels.size() * 1000);
   }
-  record.colors = label_colors(static_cast<std::size_t>(tube_count));
+  record.colors = cloud::label_colors(static_cast<std::size_t>(tube_count));
   if (tube_count > 1)
     record.contacts = {{0, 1, {0.1, 0.2, 0.0}, {0, 0, 1}, 1e-4}, {1, 2, {0, 0, 0.025}, {0, 0, 1}, -1e-5}};
   record.relations.emplace().amodal_pixels.assign(record.tube_pixels.size(), 12345);

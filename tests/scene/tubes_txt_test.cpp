@@ -22,7 +22,7 @@ using ::testing::StartsWith;
 std::vector<PlacedTube> generated_tubes(int count) {
   Random random(11);
   std::vector<PlacedTube> placed;
-  for (Tube& tube : generate_tubes(count, TubeOptions{}, random))
+  for (tube::Tube& tube : tube::generate_tubes(count, tube::TubeOptions{}, random))
     placed.push_back({std::move(tube), make_pose(random.rotation(), Vec3(random.uniform(-1, 1), 0.1, 0.2))});
   return placed;
 }
@@ -127,10 +127,11 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST(TubesTxt, RadiiAlongATubeReadBack) {
-  Tube tube{.radius = 0.01, .mass = 1.0, .nodes = {{0, 0, 0}, {0, 0, 0.1}, {0, 0, 0.2}, {0, 0, 0.3}}, .cylinders = {}};
+  tube::Tube tube{
+      .radius = 0.01, .mass = 1.0, .nodes = {{0, 0, 0}, {0, 0, 0.1}, {0, 0, 0.2}, {0, 0, 0.3}}, .cylinders = {}};
   tube.cylinders = {{0, 1, 0, 0.012}, {1, 2, 1, 0.009}, {2, 3, 2, 0.0125}};
   const std::string text = format_tubes_txt({{tube, Pose::Identity()}});
-  const Tube back = parse_tubes_txt(text, "a.txt").front().tube;
+  const tube::Tube back = parse_tubes_txt(text, "a.txt").front().tube;
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(back.radius_of(back.cylinders[i]), tube.cylinders[i].radius);
   EXPECT_EQ(back.node_radii(), (std::vector<double>{0.012, 0.012, 0.0125, 0.0125}));
   EXPECT_EQ(format_tubes_txt({{back, Pose::Identity()}}), text);

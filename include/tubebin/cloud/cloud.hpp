@@ -6,7 +6,7 @@
 
 #include "tubebin/core/geometry.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 
 using Point = Eigen::Vector3f;
 
@@ -34,4 +34,4 @@ struct Cloud {
 
 inline bool is_finite(const Point& point) { return point.allFinite(); }
 
-}  // namespace tubebin
+}  // namespace tubebin::cloud

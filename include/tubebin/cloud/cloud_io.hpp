@@ -7,7 +7,7 @@
 
 #include "tubebin/cloud/cloud.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 
 enum class CloudFormat { pcd_binary, pcd_compressed, pcd_ascii, ply_binary };
 
@@ -31,4 +31,4 @@ Cloud read_cloud(const std::string& path, double scale = 1.0);
 /// As read_cloud, from the bytes of a file; `name` stands for the file in messages.
 Cloud parse_cloud(std::string_view bytes, const std::string& name, double scale = 1.0);
 
-}  // namespace tubebin
+}  // namespace tubebin::cloud

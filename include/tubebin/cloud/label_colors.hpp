@@ -5,9 +5,9 @@
 
 #include "tubebin/cloud/cloud.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 
 /// Colours of labels 0 (bin) to `tube_count`: tube_count + 1 different ones, none of them the null colour.
 std::vector<Color> label_colors(std::size_t tube_count);
 
-}  // namespace tubebin
+}  // namespace tubebin::cloud

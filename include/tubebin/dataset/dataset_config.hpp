@@ -10,13 +10,10 @@
 #include "tubebin/scene/scene.hpp"
 #include "tubebin/tube/tube_generator.hpp"
 
-namespace tubebin {
-
-/// The version of this library, as it stands in every data set.
-const char* tool_version();
+namespace tubebin::dataset {
 
 struct OutputOptions {
-  CloudFormat format = CloudFormat::pcd_binary;
+  cloud::CloudFormat format = cloud::CloudFormat::pcd_binary;
   bool clean_cloud = false;  ///< the noise-free twin beside each cloud
   bool preview = false;      ///< a rendered picture and the ground-truth image beside each cloud
 };
@@ -29,16 +26,16 @@ struct DatasetConfig {
   int cases = 20;                     ///< scenes for each number of tubes
   int attempts_max = 50;              ///< per scene
   double attempt_time_limit = 120.0;  ///< seconds of wall-clock time, per attempt
-  TubeOptions tube;
-  std::vector<TubeKind> kinds;  ///< of a mixed bin, instead of `tube`
-  Bin bin;
-  PhysicsOptions physics;
-  Scanner scanner;
-  std::vector<Scanner> scanners;  ///< several, merged into one cloud, instead of `scanner`
+  tube::TubeOptions tube;
+  std::vector<tube::TubeKind> kinds;  ///< of a mixed bin, instead of `tube`
+  scene::Bin bin;
+  physics::PhysicsOptions physics;
+  scene::Scanner scanner;
+  std::vector<scene::Scanner> scanners;  ///< several, merged into one cloud, instead of `scanner`
   OutputOptions output;
 
   /// The scanners that look at each scene: `scanners`, or `scanner` alone.
-  std::vector<Scanner> all_scanners() const { return scanners.empty() ? std::vector{scanner} : scanners; }
+  std::vector<scene::Scanner> all_scanners() const { return scanners.empty() ? std::vector{scanner} : scanners; }
 };
 
 void describe(Fields& fields, DatasetConfig& config);
@@ -66,4 +63,4 @@ DatasetConfig unite(const DatasetConfig& there, DatasetConfig here);
 /// "1,5,10-15" -> 1, 5, 10, 11, ..., 15. Throws ConfigError naming the part that is no number or range.
 std::vector<int> parse_tube_counts(const std::string& text);
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "tubebin/dataset/dataset_config.hpp"
-#include "tubebin/dataset/folder_lock.hpp"
 #include "tubebin/dataset/manifest.hpp"
 #include "tubebin/dataset/scene_store.hpp"
+#include "tubebin/jobs/folder_lock.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 
 /// The configuration of an existing data set, of whatever version. Throws IoError where the folder has none,
 /// ConfigError where it can't be read.
@@ -31,7 +31,7 @@ class DatasetFolder {
 
   /// The same for a part of the scenes, while others may make the other parts: touches nothing but these scenes. Throws
   /// IoError where another run packs the same part.
-  DatasetFolder(const std::string& folder, const DatasetConfig& config, const Shard& shard, Part part);
+  DatasetFolder(const std::string& folder, const DatasetConfig& config, const jobs::Shard& shard, Part part);
 
   /// Removes what workers were stopped in the middle of, but for a part.
   ~DatasetFolder();
@@ -52,11 +52,11 @@ class DatasetFolder {
 
   std::string folder_;
   std::optional<std::vector<SceneId>> part_;  // of whoever makes a part alone
-  FolderLock lock_;
+  jobs::FolderLock lock_;
   DatasetConfig config_;
   SceneStore store_;
-  std::unique_ptr<FolderLock> pack_lock_;
+  std::unique_ptr<jobs::FolderLock> pack_lock_;
   Manifest manifest_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

@@ -7,11 +7,11 @@
 
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
-#include "tubebin/dataset/progress.hpp"
 #include "tubebin/dataset/scene_id.hpp"
-#include "tubebin/dataset/worker_pool.hpp"
+#include "tubebin/jobs/progress.hpp"
+#include "tubebin/jobs/worker_pool.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 
 struct GenerationReport {
   int signal = 0;                   ///< that ended the run early; 0: none
@@ -27,6 +27,6 @@ struct GenerationReport {
 /// Makes those of `scenes` that are not complete. Where `pack` has a name, they end in DIR/packs/NAME.tar, in their
 /// order. Throws IoError, ConfigError.
 GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<SceneId>& scenes, int jobs,
-                                  Progress::Style progress, const std::string& pack = "");
+                                  jobs::Progress::Style progress, const std::string& pack = "");
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

@@ -5,13 +5,13 @@
 
 #include "tubebin/dataset/scene_store.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 
 struct GeneratedScene {
   std::string failure;  ///< in a word, as rejects are counted by; empty where the scene is good
   std::string failure_detail;
   SceneContent content;  ///< empty after a failure
-  DropFigures physics;
+  physics::DropFigures physics;
   std::map<std::string, double> seconds;  ///< wall-clock time of each stage
 };
 
@@ -19,9 +19,9 @@ struct GeneratedScene {
 std::uint64_t attempt_seed(const DatasetConfig& config, const SceneId& id, int attempt);
 
 /// Who covers whom in the scanner's image, and who lies on whom.
-PileRelations relate_pile(const Scene& scene);
+scene::PileRelations relate_pile(const scene::Scene& scene);
 
 /// Generates, drops and scans. The result depends on the arguments (and the tool's version) alone.
 GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, int attempt);
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

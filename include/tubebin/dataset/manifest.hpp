@@ -10,27 +10,21 @@
 #include <string_view>
 #include <vector>
 
+#include "tubebin/core/file_record.hpp"
 #include "tubebin/dataset/scene_id.hpp"
-#include "tubebin/dataset/worker_pool.hpp"
+#include "tubebin/jobs/worker_pool.hpp"
 #include "tubebin/physics/drop_simulator.hpp"
 
-namespace tubebin {
-
-struct FileRecord {
-  std::uint64_t bytes = 0;
-  std::string xxh128;  ///< XXH3 128-bit hash in hexadecimal, as the program xxh128sum prints it
-
-  friend bool operator==(const FileRecord&, const FileRecord&) = default;
-};
+namespace tubebin::dataset {
 
 /// What the manifest says about a scene.
 struct ManifestRecord {
   std::string id;  ///< "A10/007"
   int tubes = 0;
-  std::uint64_t seed = 0;                 ///< of the attempt that succeeded
-  std::vector<FailedAttempt> rejected;    ///< the attempts before it
-  std::map<std::string, double> seconds;  ///< wall-clock time by stage, and "total" with all attempts
-  DropFigures physics;
+  std::uint64_t seed = 0;                     ///< of the attempt that succeeded
+  std::vector<jobs::FailedAttempt> rejected;  ///< the attempts before it
+  std::map<std::string, double> seconds;      ///< wall-clock time by stage, and "total" with all attempts
+  physics::DropFigures physics;
   std::map<std::string, FileRecord> files;  ///< by name in the scene's folder
   std::string pack = {};                    ///< "00002-of-00004.tar" that holds the files instead of a folder
   std::uint64_t pack_end = 0;               ///< bytes of the pack up to the end of the scene's last file
@@ -40,9 +34,6 @@ struct ManifestRecord {
 std::string format_manifest_record(const ManifestRecord& record);
 /// Throws IoError saying what is missing or wrong.
 ManifestRecord parse_manifest_record(const std::string& line);
-
-/// Size and hash of a file's bytes.
-FileRecord record_bytes(std::string_view bytes);
 
 /// Where the runs of parts keep files of their own until the parts are joined.
 std::string parts_folder(const std::string& dataset);
@@ -55,7 +46,7 @@ class Manifest {
 
   /// Of a run that makes these scenes, the part `shard`: it reads the records of these alone and appends to a file of
   /// its own.
-  Manifest(const std::string& folder, const Shard& shard, const std::vector<SceneId>& scenes);
+  Manifest(const std::string& folder, const jobs::Shard& shard, const std::vector<SceneId>& scenes);
 
   const std::map<std::string, ManifestRecord>& records() const { return records_; }
   const ManifestRecord* find(const std::string& id) const;
@@ -86,4 +77,4 @@ class Manifest {
   std::vector<std::string> damaged_lines_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

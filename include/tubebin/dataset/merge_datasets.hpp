@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "tubebin/dataset/progress.hpp"
+#include "tubebin/jobs/progress.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 
 struct MergeReport {
   int signal = 0;                     ///< that ended it early; 0: none
@@ -25,6 +25,6 @@ struct MergeReport {
 /// Throws IoError, ConfigError where the folders don't belong together (with all differing keys) or a run is writing to
 /// `output`.
 MergeReport merge_datasets(const std::string& output, const std::vector<std::string>& folders, int jobs,
-                           Progress::Style progress);
+                           jobs::Progress::Style progress);
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

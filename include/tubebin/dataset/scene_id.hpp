@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "tubebin/dataset/dataset_config.hpp"
-#include "tubebin/dataset/shard.hpp"
+#include "tubebin/jobs/shard.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 
 struct SceneId {
   std::string set;      ///< "A"
@@ -22,6 +22,6 @@ struct SceneId {
 };
 
 /// The scenes that the configuration asks for, in order: all, or those that are dealt to a part of them by their cost.
-std::vector<SceneId> list_scenes(const DatasetConfig& config, Shard shard = {});
+std::vector<SceneId> list_scenes(const DatasetConfig& config, jobs::Shard shard = {});
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

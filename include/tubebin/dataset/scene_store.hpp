@@ -13,13 +13,13 @@
 #include "tubebin/dataset/scene_id.hpp"
 #include "tubebin/scene/scene_json.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 
 /// Everything that a scene's folder holds.
 struct SceneContent {
-  SceneRecord record;
-  Cloud cloud;
-  std::optional<Cloud> clean_cloud;           ///< without the scanner's effects
+  scene::SceneRecord record;
+  cloud::Cloud cloud;
+  std::optional<cloud::Cloud> clean_cloud;    ///< without the scanner's effects
   std::map<std::string, std::string> images;  ///< PNG files by name, with previews
 };
 
@@ -55,4 +55,4 @@ class SceneStore {
   OutputOptions options_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

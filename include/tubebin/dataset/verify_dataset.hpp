@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "tubebin/dataset/dataset_folder.hpp"
-#include "tubebin/dataset/progress.hpp"
 #include "tubebin/dataset/scene_id.hpp"
+#include "tubebin/jobs/progress.hpp"
 #include "tubebin/scene/dataset_files.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 
 /// What is wrong with a recorded scene, one sentence each; empty for a sound one. Checks the files' sizes and hashes;
 /// that scene.json, tubes.txt and the cloud can be read and agree with each other; one colour a label, all different;
 /// that every point lies on the surface that its label names; contacts within the limits, every tube held.
-std::vector<std::string> verify_scene(const DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
+std::vector<std::string> verify_scene(const scene::DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
                                       const ManifestRecord& record);
 
 struct VerificationReport {
@@ -29,10 +29,10 @@ struct VerificationReport {
 
 /// Checks all scenes of the data set in worker processes. Throws IoError, ConfigError where the folder is no data
 /// set, or a run is writing to it.
-VerificationReport verify_dataset(const std::string& folder, int jobs, Progress::Style progress);
+VerificationReport verify_dataset(const std::string& folder, int jobs, jobs::Progress::Style progress);
 
 /// Removes the damaged scenes, and lines that are no records, from the manifest, so that generation makes those
 /// scenes anew.
 void forget_damage(DatasetFolder& folder, const VerificationReport& report);
 
-}  // namespace tubebin
+}  // namespace tubebin::dataset

@@ -6,7 +6,7 @@
 
 #include "tubebin/core/geometry.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// Numbers of points, one row a ground-truth segment and one column a predicted segment.
 using Counts = Eigen::Matrix<std::int64_t, Eigen::Dynamic, Eigen::Dynamic>;
@@ -18,4 +18,4 @@ constexpr int kUnmatched = -1;
 /// columns; a pair of weight zero stays unmatched. O(s^2 l) for the smaller side s and the larger side l.
 std::vector<int> max_weight_assignment(const Counts& weights);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

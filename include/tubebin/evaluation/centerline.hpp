@@ -5,7 +5,7 @@
 
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// A straight piece of a centreline, metres, world frame.
 struct CenterlinePiece {
@@ -40,14 +40,14 @@ struct CenterlineSamples {
 };
 
 /// The axes of the tube's cylinders in the world frame.
-Centerline centerline(const PlacedTube& tube);
+Centerline centerline(const scene::PlacedTube& tube);
 
 /// Samples of every tube of the scene. One is visible if no other tube crosses the line from the scanner to
 /// it.
-std::vector<CenterlineSamples> sample_centerlines(const Scene& scene);
+std::vector<CenterlineSamples> sample_centerlines(const scene::Scene& scene);
 
 /// `truth_samples` are those of `truth`. The model has at least one piece that is not bridged.
 CenterlineError centerline_error(const Centerline& truth, const CenterlineSamples& truth_samples,
                                  const Centerline& model);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

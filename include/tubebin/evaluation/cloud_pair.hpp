@@ -7,14 +7,14 @@
 #include "tubebin/cloud/cloud.hpp"
 #include "tubebin/evaluation/contingency.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// What tells the segments of a cloud apart.
 enum class SegmentField { automatic, label, color };
 
 /// A cloud and the name that messages call it by.
 struct NamedCloud {
-  const Cloud& cloud;
+  const cloud::Cloud& cloud;
   std::string name;
 };
 
@@ -45,4 +45,4 @@ PairedIds pair_clouds(const NamedCloud& filtered, const NamedCloud& labeled,
 /// Metres. Far below the distance of neighbouring points, far above the rounding of five decimals.
 constexpr float kPositionTolerance = 1e-5F;
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -10,7 +10,7 @@
 
 #include "tubebin/evaluation/assignment.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// A segment's name: a label or a colour.
 using SegmentId = std::uint32_t;
@@ -44,4 +44,4 @@ void require_segments(std::size_t truth_count, std::size_t predicted_count, cons
 Contingency count_pairs(std::span<const SegmentId> truth, std::span<const SegmentId> predicted,
                         std::optional<SegmentId> bin_id = std::nullopt);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

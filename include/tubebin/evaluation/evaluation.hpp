@@ -8,7 +8,7 @@
 
 #include "tubebin/evaluation/run_score.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// Scored runs of one or several algorithms, with what is missing.
 struct Evaluation {
@@ -24,4 +24,4 @@ struct Evaluation {
 /// Told how many scenes of how many are done, from one thread at a time; may be empty.
 using OnProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -8,15 +8,15 @@
 #include "tubebin/evaluation/paper_comparison.hpp"
 #include "tubebin/evaluation/scene_picture.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// The points of a run with their labels, or nothing where they are not to be had.
-using PointsOfRun = std::function<std::optional<LabelledPoints>(const RunScore&)>;
+using ReadPoints = std::function<std::optional<LabelledPoints>(const RunScore&)>;
 
 struct ReportInput {
   const Evaluation& evaluation;
   GenerationSeconds generation_seconds;
-  PointsOfRun points_of_run;  ///< for the pictures; may be empty
+  ReadPoints read_points;  ///< for the pictures; may be empty
 };
 
 std::string format_html_report(const ReportInput& input);
@@ -24,4 +24,4 @@ std::string format_html_report(const ReportInput& input);
 /// The runs that the report shows: for each method the worst ones and the best, at most one a scene.
 std::vector<const RunScore*> pictured_runs(const std::vector<RunScore>& runs);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

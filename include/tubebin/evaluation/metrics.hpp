@@ -9,7 +9,7 @@
 #include "tubebin/evaluation/centerline.hpp"
 #include "tubebin/evaluation/micro_recall.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// IoU thresholds 0.50, 0.55, ..., 0.95 of average precision (Lin et al. 2014, COCO).
 constexpr int kIouThresholdCount = 10;
@@ -79,4 +79,4 @@ double average_precision(int tubes, int predicted, int true_positives);
 /// Hubert & Arabie 1985; 1 where both partitions are trivial.
 double adjusted_rand_index(const Counts& counts);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -3,7 +3,7 @@
 
 #include "tubebin/evaluation/contingency.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// The matching M between ground-truth and predicted segments.
 struct Matching {
@@ -24,4 +24,4 @@ enum class BinPoints {
 /// The null segment is never matched.
 Matching match_segments(const Contingency& contingency, BinPoints bin_points = BinPoints::counted);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

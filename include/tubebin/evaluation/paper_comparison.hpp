@@ -10,7 +10,7 @@
 #include "tubebin/evaluation/summary.hpp"
 #include "tubebin/evaluation/table.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// Seconds to generate each test case, by set and number of tubes; empty where they are not known.
 using GenerationSeconds = std::map<std::string, std::map<int, std::vector<double>>>;
@@ -47,4 +47,4 @@ std::vector<Table> paper_tables(const Evaluation& evaluation, const std::vector<
 /// Figures 8 and 9, and Tables 1 and 2 as plots, with the paper's values; those that have data.
 std::vector<Plot> paper_plots(const std::vector<GroupSummary>& groups, const GenerationSeconds& seconds);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 struct PaperFigures {
   /// Table 1: seconds to generate a test case, by set and number of tubes.
@@ -17,4 +17,4 @@ struct PaperFigures {
 
 const PaperFigures& paper_figures();
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -6,7 +6,7 @@
 #include "tubebin/evaluation/table.hpp"
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// Surfaces of two tubes that are nearer than this touch, metres: more than any simulation leaves between
 /// bodies at rest, and a hundredth of a tube's width.
@@ -25,7 +25,7 @@ struct PileStatistics {
 
 /// Where the closest points of two tubes include a free end, whose flat face the distance of axes does not
 /// describe, they count neither as a contact nor as a penetration. `tube_pixels` as in SceneRecord.
-PileStatistics pile_statistics(const Scene& scene, const std::vector<std::size_t>& tube_pixels);
+PileStatistics pile_statistics(const scene::Scene& scene, const std::vector<std::size_t>& tube_pixels);
 
 /// Piles of one set and number of tubes from two sources.
 struct PileComparison {
@@ -38,4 +38,4 @@ struct PileComparison {
 /// how many of the published piles lie between those.
 Table pile_table(const std::vector<PileComparison>& comparisons);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

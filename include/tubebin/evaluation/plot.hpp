@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 struct PlotPoint {
   double x = 0.0;
@@ -45,4 +45,4 @@ std::string format_svg(const Plot& plot);
 /// Positions of five or so ticks in steps of 1, 2 or 5 times a power of ten that cover [low, high].
 std::vector<double> linear_ticks(double low, double high);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -10,7 +10,7 @@
 #include "tubebin/evaluation/summary.hpp"
 #include "tubebin/evaluation/table.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 enum class TableFormat { table, markdown, csv, json };
 
@@ -54,4 +54,4 @@ Table matching_table(const Contingency& contingency, const Matching& matching, c
 /// The pair's matching and micro-recall in the format; `csv` is the matching alone.
 std::string format_pair(const PairedIds& pairs, TableFormat format);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -8,7 +8,7 @@
 #include "tubebin/evaluation/metrics.hpp"
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// Tubes are told apart by the visible share of their centreline: [0, 1/4), [1/4, 1/2), [1/2, 3/4), [3/4, 1].
 constexpr int kVisibilityClasses = 4;
@@ -34,7 +34,7 @@ RunKey parse_scene_name(const std::string& name);
 
 /// What is known of a scene's tubes beyond the labels of its points; tube k is at [k - 1].
 struct SceneTruth {
-  explicit SceneTruth(const Scene& scene);
+  explicit SceneTruth(const scene::Scene& scene);
 
   std::vector<Centerline> centerlines;
   std::vector<CenterlineSamples> samples;
@@ -58,4 +58,4 @@ struct RunScore {
 RunScore score_run(const RunKey& key, const Contingency& contingency, const Matching& matching, const SceneTruth* truth,
                    const std::vector<Centerline>& model);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -9,14 +9,14 @@
 #include "tubebin/evaluation/run_score.hpp"
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// The points of a filtered cloud with their ground-truth labels (0 = bin) and predicted ids.
 struct LabelledPoints {
-  std::vector<Point> points;  ///< metres, world frame
+  std::vector<cloud::Point> points;  ///< metres, world frame
   std::vector<SegmentId> truth;
   std::vector<SegmentId> predicted;
-  Scanner scanner;
+  scene::Scanner scanner;
   double ratio = 1.0;  ///< of the scanner's points that are here, so that the rest can be filled
 };
 
@@ -32,8 +32,4 @@ struct ScenePicture {
 
 ScenePicture draw_scene(const LabelledPoints& points);
 
-/// The run's points, where its clouds were kept and its scene is known. Points of the bin without a label are
-/// left out.
-std::optional<LabelledPoints> read_points(const RunScore& run);
-
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -9,7 +9,7 @@
 
 #include "tubebin/evaluation/run_score.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// A mean and its 95 % confidence interval.
 struct Interval {
@@ -78,4 +78,4 @@ std::vector<GroupSummary> summarize(std::span<const RunScore> runs);
 GroupSummary summarize_together(const std::string& method, const std::string& set,
                                 std::span<const RunScore* const> runs);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace tubebin {
+namespace tubebin::evaluation {
 
 /// What a table shows, and what a program reads.
 struct Cell {
@@ -49,4 +49,4 @@ std::string format_html(const Table& table);
 /// For element content and attribute values.
 std::string escape_html(const std::string& text);
 
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

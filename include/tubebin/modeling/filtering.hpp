@@ -8,7 +8,7 @@
 #include "tubebin/modeling/modeling_input.hpp"
 #include "tubebin/modeling/scan_view.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 
 struct FilteringOptions {
   double ratio = 1.0;            ///< of the tube points that stay
@@ -21,8 +21,8 @@ void describe(Fields& fields, FilteringOptions& options);
 /// The points that the later stages work on, in an order that their positions alone determine.
 struct FilteredCloud {
   std::vector<std::uint32_t> source;  ///< index of each point in the input
-  std::vector<Point> points;          ///< metres, world frame
-  std::vector<Point> normals;         ///< unit, toward the viewpoint; zero where a point has too few neighbours; none
+  std::vector<cloud::Point> points;   ///< metres, world frame
+  std::vector<cloud::Point> normals;  ///< unit, toward the viewpoint; zero where a point has too few neighbours; none
                                       ///< until they are estimated
   double spacing = 0.0;               ///< metres between neighbours: the root of the area that a point stands for
 };
@@ -55,11 +55,11 @@ std::vector<std::uint32_t> crop_bin(const ModelingInput& input, const FilteringO
 
 /// Keeps round(ratio * count) of the indices, at least one of any. Which ones depends on the seed and the points'
 /// positions, not on their order.
-std::vector<std::uint32_t> downsample(std::span<const Point> points, std::vector<std::uint32_t> indices, double ratio,
-                                      std::uint64_t seed);
+std::vector<std::uint32_t> downsample(std::span<const cloud::Point> points, std::vector<std::uint32_t> indices,
+                                      double ratio, std::uint64_t seed);
 
 /// Drops points with fewer than a third of the neighbours that their surroundings let expect.
-std::vector<std::uint32_t> remove_outliers(const ViewProjection& projection, std::span<const Point> points,
+std::vector<std::uint32_t> remove_outliers(const ViewProjection& projection, std::span<const cloud::Point> points,
                                            const std::vector<std::uint32_t>& indices);
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -6,7 +6,7 @@
 #include "tubebin/core/yaml.hpp"
 #include "tubebin/modeling/tube_model.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 
 struct GreedyJoiningOptions {
   double gap_max = 0.1;         ///< metres between two endpoints
@@ -22,4 +22,4 @@ void describe(Fields& fields, GreedyJoiningOptions& options);
 /// endpoint is joined once at most.
 std::vector<TubeModel> join_greedily(const std::vector<TubePiece>& pieces, const GreedyJoiningOptions& options);
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

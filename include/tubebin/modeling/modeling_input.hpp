@@ -8,13 +8,13 @@
 #include "tubebin/cloud/cloud.hpp"
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 
 struct ModelingInput {
-  std::span<const Point> points;              ///< metres, world frame; not finite where a pixel hit nothing
+  std::span<const cloud::Point> points;       ///< metres, world frame; not finite where a pixel hit nothing
   Pose world_from_sensor = Pose::Identity();  ///< sensor frame: z along the view
-  std::optional<Bin> bin;                     ///< the known bin; without it, floor and walls are found in the cloud
+  std::optional<scene::Bin> bin;              ///< the known bin; without it, floor and walls are found in the cloud
   Pose world_from_bin = Pose::Identity();
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -9,7 +9,7 @@
 #include "tubebin/modeling/region_growing.hpp"
 #include "tubebin/modeling/tube_model.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 
 enum class ModelingMethod { centerline, region_growing };
 
@@ -38,7 +38,7 @@ struct StageSeconds {
 
 struct ModelingResult {
   std::vector<std::uint32_t> source;  ///< of each filtered point, its index in the input
-  std::vector<Label> labels;          ///< of each filtered point: k for tubes[k - 1], 0 where it belongs to none
+  std::vector<cloud::Label> labels;   ///< of each filtered point: k for tubes[k - 1], 0 where it belongs to none
   std::vector<TubeModel> tubes;
   double radius = 0.0;       ///< metres: as given, or as estimated
   double tube_length = 0.0;  ///< metres: as given, or as estimated; 0 where the tubes have no common length
@@ -49,4 +49,4 @@ struct ModelingResult {
 
 ModelingResult model_tubes(const ModelingInput& input, const ModelingOptions& options);
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -6,7 +6,7 @@
 #include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/tube_model.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 
 struct RegionGrowingOptions {
   int neighbors = 20;             ///< of a point, for growing
@@ -27,4 +27,4 @@ std::vector<Segment> grow_regions(const FilteredCloud& cloud, const RegionGrowin
 std::vector<TubePiece> fit_cylinders(const FilteredCloud& cloud, const Segment& segment, double radius,
                                      const RegionGrowingOptions& options);
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -8,7 +8,7 @@
 
 #include "tubebin/cloud/cloud.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 
 /// Stereographic projection of the directions from a viewpoint: conformal, and defined for every direction but the
 /// one straight back, so that neighbours in space are neighbours in the plane whatever the field of view. Near the
@@ -30,20 +30,20 @@ class ViewProjection {
 
   /// The view axis is the sensor's z axis, or, where the points do not lie in front of it (a pose that states a
   /// position alone), the direction to the middle of the points.
-  ViewProjection(const Pose& world_from_sensor, const Point& middle_of_points);
+  ViewProjection(const Pose& world_from_sensor, const cloud::Point& middle_of_points);
 
-  Image operator()(const Point& point_in_world) const {
-    const Point offset = point_in_world - viewpoint_;
+  Image operator()(const cloud::Point& point_in_world) const {
+    const cloud::Point offset = point_in_world - viewpoint_;
     return image_of(offset.x(), offset.y(), offset.z());
   }
-  Images images(std::span<const Point> points) const {
+  Images images(std::span<const cloud::Point> points) const {
     Images images;
     project(points, images);
     return images;
   }
   /// As images(), into memory that is there.
-  void project(std::span<const Point> points, Images& images) const;
-  const Point& viewpoint() const { return viewpoint_; }
+  void project(std::span<const cloud::Point> points, Images& images) const;
+  const cloud::Point& viewpoint() const { return viewpoint_; }
 
  private:
   /// Of an offset from the viewpoint, in world axes.
@@ -57,7 +57,7 @@ class ViewProjection {
     return {right * scale, down * scale, range};
   }
 
-  Point viewpoint_;
+  cloud::Point viewpoint_;
   Eigen::Matrix3f axes_from_world_;
 };
 
@@ -65,7 +65,7 @@ class ViewProjection {
 class RangeImage {
  public:
   /// `cell` is the cells' size in the plane of the projection. Points that are not finite are left out.
-  RangeImage(const ViewProjection& projection, std::span<const Point> points, float cell);
+  RangeImage(const ViewProjection& projection, std::span<const cloud::Point> points, float cell);
 
   enum class Evidence {
     hidden,   ///< the scanner measured something nearer: what is at the point cannot be seen
@@ -73,7 +73,7 @@ class RangeImage {
     empty     ///< the scanner saw through the point: nothing is there
   };
   /// What the scan says about a surface at `point`.
-  Evidence evidence(const Point& point, float tolerance) const;
+  Evidence evidence(const cloud::Point& point, float tolerance) const;
 
  private:
   ViewProjection projection_;
@@ -83,4 +83,4 @@ class RangeImage {
   std::vector<float> nearest_;  ///< infinity where nothing was measured
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -6,7 +6,7 @@
 
 #include "tubebin/cloud/cloud.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 
 /// Indices of the filtered cloud's points that one segment (cluster) holds.
 using Segment = std::vector<std::uint32_t>;
@@ -48,4 +48,4 @@ Vec3 nearest_on_polyline(const Vec3& point, const std::vector<Vec3>& nodes);
 /// Distance of a point to the nearest place of a polyline, metres.
 double distance_to_polyline(const Vec3& point, const std::vector<Vec3>& nodes);
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

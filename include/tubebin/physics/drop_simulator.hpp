@@ -8,7 +8,7 @@
 #include "tubebin/core/yaml.hpp"
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 
 /// Physics settings; the defaults were measured (docs/physics.md).
 struct PhysicsOptions {
@@ -71,14 +71,14 @@ struct DropFigures {
 struct DropResult {
   DropFailure failure = DropFailure::none;
   std::string detail;  ///< "tube 3 left the bin", empty without a failure
-  std::vector<PlacedTube> tubes;
-  std::vector<Contact> contacts;  ///< of the finished scene
+  std::vector<scene::PlacedTube> tubes;
+  std::vector<scene::Contact> contacts;  ///< of the finished scene
   DropFigures figures;
 };
 
 /// Spawns the tubes above the bin, lets them fall together until all are at rest, and checks the result.
 /// The same tubes, options and seed give the same result, whatever ran before in this process.
-DropResult drop_tubes(const std::vector<Tube>& tubes, const Bin& bin, const PhysicsOptions& options,
+DropResult drop_tubes(const std::vector<tube::Tube>& tubes, const scene::Bin& bin, const PhysicsOptions& options,
                       std::uint64_t seed);
 
-}  // namespace tubebin
+}  // namespace tubebin::physics

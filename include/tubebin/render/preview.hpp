@@ -8,7 +8,7 @@
 #include "tubebin/cloud/cloud.hpp"
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 
 /// Row by row from the top, three bytes (red, green, blue) a pixel.
 struct Image {
@@ -16,10 +16,11 @@ struct Image {
   int height = 0;
   std::vector<std::uint8_t> rgb;
 
-  Color pixel(int column, int row) const {
+  cloud::Color pixel(int column, int row) const {
     const std::uint8_t* p =
         &rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column))];
-    return static_cast<Color>(p[0]) << 16 | static_cast<Color>(p[1]) << 8 | static_cast<Color>(p[2]);
+    return static_cast<cloud::Color>(p[0]) << 16 | static_cast<cloud::Color>(p[1]) << 8 |
+           static_cast<cloud::Color>(p[2]);
   }
 };
 
@@ -28,11 +29,11 @@ bool can_render();
 
 /// The bin and its tubes in their ground-truth colours, lit, from obliquely above (as the paper's Figures 3
 /// and 6 show scenes). The bin's front walls are glass. Throws std::runtime_error where !can_render().
-Image render_preview(const Scene& scene, int width, int height);
+Image render_preview(const scene::Scene& scene, int width, int height);
 
 /// The ground-truth colours that the scanner sees in the window's pixels, black where it sees nothing: no
 /// light, no antialiasing, the scanner's camera and range. Throws std::runtime_error where !can_render().
-Image render_labels(const Scene& scene, const PixelWindow& window);
+Image render_labels(const scene::Scene& scene, const scene::PixelWindow& window);
 
 /// The image as a PNG file's bytes; equal images give equal bytes.
 std::vector<std::uint8_t> encode_png(const Image& image);
@@ -40,4 +41,4 @@ std::vector<std::uint8_t> encode_png(const Image& image);
 /// Complete or not at all. Throws IoError.
 void write_png(const std::string& path, const Image& image);
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -4,33 +4,33 @@
 #include "tubebin/cloud/cloud.hpp"
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 
 struct Scan {
-  Cloud cloud;         ///< with colours and labels
-  PixelWindow window;  ///< the pixels that the cloud covers (an organized cloud has one point a pixel)
+  cloud::Cloud cloud;         ///< with colours and labels
+  scene::PixelWindow window;  ///< the pixels that the cloud covers (an organized cloud has one point a pixel)
   std::vector<std::size_t> tube_pixels;  ///< pixels that have a point of tube k at [k - 1]
 };
 
 /// Scans the scene with its own scanner. Without effects (scene.scanner.effects) every point lies on the first surface
 /// along its pixel's ray (within float32 of the exact position), whatever the seed. With effects `seed`, the scene's,
 /// decides all randomness, the same for a pixel in every region.
-Scan scan(const Scene& scene, std::uint64_t seed = 0);
+Scan scan(const scene::Scene& scene, std::uint64_t seed = 0);
 
 /// What all of the scene's scanners see, each with its own effects and noise. Of one scanner it is scan(). Of several it is
 /// one unorganized cloud: the points of source 0, then those of source 1 and so on, each with its source; `tube_pixels` are
 /// those of all, `window` is source 0's. Source 0's points are those that it would have alone.
 struct MergedScan : Scan {
-  std::vector<PixelWindow> further_windows;
+  std::vector<scene::PixelWindow> further_windows;
 };
-MergedScan scan_from_all(const Scene& scene, std::uint64_t seed = 0);
+MergedScan scan_from_all(const scene::Scene& scene, std::uint64_t seed = 0);
 /// Its noise-free twin.
-MergedScan scan_exactly_from_all(Scene scene);
+MergedScan scan_exactly_from_all(scene::Scene scene);
 
 /// The noise-free twin of scan(): the scene as exact rays see it. Organized clouds agree pixel by pixel.
-Scan scan_exactly(Scene scene);
+Scan scan_exactly(scene::Scene scene);
 
 /// "3.13.5": the Embree that was compiled in.
 const char* embree_version();
 
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -4,7 +4,7 @@
 
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 
 class Camera {
  public:
@@ -36,4 +36,4 @@ class Camera {
   Pose world_from_scanner_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

@@ -10,7 +10,7 @@
 
 #include "tubebin/core/tar.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 
 /// "A10/007.cloud.pcd": the member of a pack that is this file of the scene.
 std::string packed_name(const std::string& scene, const std::string& file);
@@ -52,4 +52,4 @@ class DatasetFiles {
   std::map<std::string, std::vector<Packed>> packed_;  // by scene
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

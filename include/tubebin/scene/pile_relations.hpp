@@ -5,7 +5,7 @@
 
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 
 /// Pixels in which the surface of `front` (0: the bin) lies before that of tube `behind`.
 struct Occlusion {
@@ -54,6 +54,6 @@ std::vector<LabelGroup> entangled_groups(std::size_t tube_count, const std::vect
 
 /// A tube's axis as polylines (node indices): one from end to end, or one for each stretch between free ends and
 /// branchings; a ring's ends where it began; a node alone is one of a single node.
-std::vector<std::vector<int>> centerline_paths(const Tube& tube);
+std::vector<std::vector<int>> centerline_paths(const tube::Tube& tube);
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

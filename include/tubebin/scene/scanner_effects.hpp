@@ -4,7 +4,7 @@
 
 #include "tubebin/core/yaml.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 
 /// Along the ray; grows with the square of the depth and with the incidence angle.
 struct RangeNoise {
@@ -71,4 +71,4 @@ struct ScannerEffects {
 void describe(Fields& fields, ScannerEffects& effects);
 void check(const ScannerEffects& effects, const KeyPlaces& places, const std::string& prefix);
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

@@ -9,7 +9,7 @@
 #include "tubebin/scene/scanner_effects.hpp"
 #include "tubebin/tube/tube.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 
 /// An open box: a floor slab and four walls, all `wall_thickness` thick, around the inner space
 /// |x| <= length / 2, |y| <= width / 2, 0 <= z <= height. All metres.
@@ -52,7 +52,7 @@ struct Scanner {
 };
 
 struct PlacedTube {
-  Tube tube;
+  tube::Tube tube;
   Pose world_from_tube = Pose::Identity();
 
   Vec3 node_in_world(int node) const { return world_from_tube * tube.nodes[static_cast<std::size_t>(node)]; }
@@ -94,4 +94,4 @@ void describe(Fields& fields, Bin& bin);
 void describe(Fields& fields, Scanner& scanner);
 void check(const Scanner& scanner, const KeyPlaces& places, const std::string& prefix);
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

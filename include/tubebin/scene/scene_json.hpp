@@ -10,7 +10,7 @@
 #include "tubebin/cloud/cloud.hpp"
 #include "tubebin/scene/pile_relations.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 
 /// Everything that scene.json holds.
 struct SceneRecord {
@@ -18,7 +18,7 @@ struct SceneRecord {
   std::uint64_t seed = 0;  ///< of the attempt that succeeded
   Scene scene;
   PixelWindow window;                    ///< of the organized cloud in the full image, or of source 0's pixels
-  std::vector<Color> colors;             ///< of label 0 (bin) and every tube
+  std::vector<cloud::Color> colors;      ///< of label 0 (bin) and every tube
   std::vector<std::size_t> tube_pixels;  ///< visible pixels of tube k at [k - 1], all sources together
   std::vector<Contact> contacts;
   std::vector<PixelWindow> further_windows = {};  ///< of the scene's further scanners
@@ -37,4 +37,4 @@ SceneRecord read_scene_json(const std::string& path);
 /// As read_scene_json, from a text; `name` stands for the file in messages.
 SceneRecord parse_scene_json(std::string_view text, const std::string& name);
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

@@ -16,7 +16,7 @@
 
 #include "tubebin/scene/scene.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 
 /// The file's tubes, posed by the identity (their nodes are in the world frame already), with mass and wall
 /// thickness 0. Throws IoError naming file and line where the text is not such a scene: counts and lines
@@ -31,4 +31,4 @@ std::vector<PlacedTube> parse_tubes_txt(std::string_view text, const std::string
 /// exactly.
 std::string format_tubes_txt(const std::vector<PlacedTube>& tubes);
 
-}  // namespace tubebin
+}  // namespace tubebin::scene

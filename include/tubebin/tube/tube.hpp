@@ -7,7 +7,7 @@
 
 #include "tubebin/core/geometry.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 
 /// A cylinder between two nodes, with flat ends. At a node that two or more cylinders share, a sphere of the thickest one's
 /// radius fills the joint (paper, Section 3).
@@ -56,4 +56,4 @@ struct MassProperties {
 /// Of the union of the tube's cylinders and joint spheres, solid or with a bore, at uniform density.
 MassProperties mass_properties(const Tube& tube);
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

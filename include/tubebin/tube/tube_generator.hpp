@@ -6,7 +6,7 @@
 #include "tubebin/tube/tube_path.hpp"
 #include "tubebin/tube/tube_shape.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 
 /// One kind of tube. The path is that of a chain, the paper's tube; other shapes have options of their own.
 struct TubeOptions : PathOptions {
@@ -40,4 +40,4 @@ std::string kind_name(const std::vector<TubeKind>& kinds, std::size_t index);
 /// drawn by share.
 std::vector<Tube> generate_mixed_tubes(int count, const std::vector<TubeKind>& kinds, Random& random);
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

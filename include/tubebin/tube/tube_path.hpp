@@ -7,7 +7,7 @@
 #include "tubebin/core/yaml.hpp"
 #include "tubebin/tube/tube.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 
 struct PathOptions {
   double length = 0.5;                ///< l, metres
@@ -50,4 +50,4 @@ Vec3 spherical(double theta, double phi);
 /// already; the others are added. Orders count from 0.
 void append_path(int start, const std::vector<Vec3>& nodes, Tube& tube);
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

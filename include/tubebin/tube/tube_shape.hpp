@@ -9,7 +9,7 @@
 #include "tubebin/core/yaml.hpp"
 #include "tubebin/tube/tube.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 
 struct TubeOptions;
 
@@ -55,4 +55,4 @@ class ShapeChoice {
   std::unique_ptr<Shape> shape_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::render {
 namespace {
 
 constexpr int kLights = 32;
@@ -63,4 +63,4 @@ float DomeLight::seen_from(const Light& light, const Vertex& vertex) const {
          above * ((1.0F - right) * free(column, row + 1) + right * free(column + 1, row + 1));
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -4,7 +4,7 @@
 #include "render/mesh.hpp"
 #include "render/opengl/shadow_map.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 
 class DomeLight {
  public:
@@ -27,4 +27,4 @@ class DomeLight {
   std::vector<Light> lights_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -5,7 +5,7 @@
 #include "render/mesh.hpp"
 #include "render/opengl/offscreen_context.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 
 inline void draw(const Mesh& mesh) {
   if (mesh.indices.empty()) return;
@@ -18,4 +18,4 @@ inline void draw(const Mesh& mesh) {
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.indices.size()), GL_UNSIGNED_INT, mesh.indices.data());
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::render

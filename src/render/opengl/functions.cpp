@@ -2,7 +2,7 @@
 
 #include <dlfcn.h>
 
-namespace tubebin {
+namespace tubebin::render {
 namespace {
 
 constexpr const char* kLibrary = "libOSMesa.so.8";  // of all versions of Mesa since 2012
@@ -33,4 +33,4 @@ bool load_opengl() {
   return loaded;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -7,7 +7,7 @@
 #include <GL/glext.h>
 #include <GL/osmesa.h>
 
-namespace tubebin {
+namespace tubebin::render {
 
 // Pointers, which hide the functions of the same names in this namespace.
 #define F(name) extern decltype(&::name) name;  // NOLINT(bugprone-macro-parentheses): declares
@@ -17,4 +17,4 @@ namespace tubebin {
 /// Sets them all, once a process; before it none may be called. False where OSMesa can't be loaded.
 bool load_opengl();
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -5,7 +5,7 @@
 #include "tubebin/cloud/label_colors.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 namespace {
 
 /// With so many facets a tube's outline is at most 0.1 % of its radius off, a hundredth of a pixel.
@@ -17,7 +17,7 @@ constexpr double kFarMargin = 1e-5;
 
 /// The scanner's pinhole, restricted to the window, as an OpenGL frustum. An OpenGL eye looks along -z with y
 /// up.
-void set_camera(const Camera& camera, const Scanner& scanner, const PixelWindow& window) {
+void set_camera(const scene::Camera& camera, const scene::Scanner& scanner, const scene::PixelWindow& window) {
   const double near = std::max(scanner.range_min, kNearestDepth);
   const double metres_per_pixel = near / camera.focal_length();
   const double left = window.x - camera.width() / 2.0;
@@ -33,24 +33,24 @@ void set_camera(const Camera& camera, const Scanner& scanner, const PixelWindow&
   glLoadMatrixd(eye_from_world.data());  // meshes are around the scanner already
 }
 
-void set_color(Color color) {
+void set_color(cloud::Color color) {
   glColor3ub(static_cast<GLubyte>(color >> 16 & 0xFF), static_cast<GLubyte>(color >> 8 & 0xFF),
              static_cast<GLubyte>(color & 0xFF));
 }
 
 }  // namespace
 
-Image draw_label_view(const Scene& scene, const PixelWindow& window) {
+Image draw_label_view(const scene::Scene& scene, const scene::PixelWindow& window) {
   const OffscreenContext context(window.width, window.height);
   glDisable(GL_DITHER);
   glEnable(GL_DEPTH_TEST);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  set_camera(Camera(scene.scanner), scene.scanner, window);
+  set_camera(scene::Camera(scene.scanner), scene.scanner, window);
 
-  const std::vector<Color> colors = label_colors(scene.tubes.size());
+  const std::vector<cloud::Color> colors = cloud::label_colors(scene.tubes.size());
   const Vec3& origin = scene.scanner.position;
   Mesh bin;
-  for (const Box& box : bin_boxes(scene.bin)) add_box(box, origin, kLabelFineness, bin);
+  for (const scene::Box& box : scene::bin_boxes(scene.bin)) add_box(box, origin, kLabelFineness, bin);
   set_color(colors[0]);
   draw(bin);
   for (std::size_t i = 0; i < scene.tubes.size(); ++i) {
@@ -60,4 +60,4 @@ Image draw_label_view(const Scene& scene, const PixelWindow& window) {
   return context.read();
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -1,7 +1,7 @@
 // GLSL 1.20 sources of the lit picture.
 #pragma once
 
-namespace tubebin {
+namespace tubebin::render {
 
 constexpr const char* kLitVertexShader = R"(#version 120
 uniform mat4 sun_map_from_world;
@@ -47,4 +47,4 @@ void main() {
 }
 )";
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -9,7 +9,7 @@
 #include "render/opengl/views.hpp"
 #include "tubebin/cloud/label_colors.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 namespace {
 
 constexpr Fineness kLitFineness = {.facets = 24, .cell = 0.015};
@@ -29,10 +29,10 @@ struct View {
 };
 
 /// What a picture must show: the bin and the tubes.
-Eigen::AlignedBox3d scene_bounds(const Scene& scene) {
+Eigen::AlignedBox3d scene_bounds(const scene::Scene& scene) {
   Eigen::AlignedBox3d bounds;
-  for (const Box& box : bin_boxes(scene.bin)) bounds.extend(box);
-  for (const PlacedTube& placed : scene.tubes)
+  for (const scene::Box& box : scene::bin_boxes(scene.bin)) bounds.extend(box);
+  for (const scene::PlacedTube& placed : scene.tubes)
     for (int node = 0; node < static_cast<int>(placed.tube.nodes.size()); ++node)
       for (const double side : {-1.0, 1.0})
         bounds.extend(placed.node_in_world(node) + Vec3::Constant(side * placed.tube.radius_max()));
@@ -68,7 +68,7 @@ View view_of(const Eigen::AlignedBox3d& bounds, double aspect) {
 }
 
 /// The inverse of the shader's encoding.
-Eigen::Vector3f linear_from_encoded(Color color) {
+Eigen::Vector3f linear_from_encoded(cloud::Color color) {
   const auto channel = [&](int shift) {
     const float encoded = static_cast<float>(color >> shift & 0xFF) / 255.0F;
     return encoded * encoded;
@@ -83,9 +83,9 @@ Ball ball_around(const Eigen::AlignedBox3d& bounds) {
 enum class Wall { solid, glass };
 
 /// The walls between the eye and the bin's inside, which are glass, or the others and the floor.
-Mesh bin_walls(const Bin& bin, Wall kind, const View& view, const Fineness& fineness) {
+Mesh bin_walls(const scene::Bin& bin, Wall kind, const View& view, const Fineness& fineness) {
   Mesh walls;
-  for (const Box& box : bin_boxes(bin)) {
+  for (const scene::Box& box : scene::bin_boxes(bin)) {
     const bool upright = box.max().z() > 0.0;
     const Vec3 outward = Vec3(box.center().x(), box.center().y(), 0.0).normalized();
     const bool hides = upright && outward.dot(view.backward) > kGlassCosine;
@@ -97,9 +97,9 @@ Mesh bin_walls(const Bin& bin, Wall kind, const View& view, const Fineness& fine
 /// What throws shadows, coarsely.
 class Casters {
  public:
-  Casters(const Scene& scene, const View& view) {
+  Casters(const scene::Scene& scene, const View& view) {
     meshes_.push_back(bin_walls(scene.bin, Wall::solid, view, kCasterFineness));
-    for (const PlacedTube& tube : scene.tubes) meshes_.push_back(tube_mesh(tube, Vec3::Zero(), kCasterFineness));
+    for (const scene::PlacedTube& tube : scene.tubes) meshes_.push_back(tube_mesh(tube, Vec3::Zero(), kCasterFineness));
   }
 
   void draw_all() const {
@@ -112,7 +112,8 @@ class Casters {
 
 class LitView {
  public:
-  LitView(const Scene& scene, const View& view, const Eigen::AlignedBox3d& bounds, const OffscreenContext& context)
+  LitView(const scene::Scene& scene, const View& view, const Eigen::AlignedBox3d& bounds,
+          const OffscreenContext& context)
       : scene_(scene),
         view_(view),
         bounds_(bounds),
@@ -139,7 +140,7 @@ class LitView {
     sun_map_.bind();
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    const std::vector<Color> colors = label_colors(scene_.tubes.size());
+    const std::vector<cloud::Color> colors = cloud::label_colors(scene_.tubes.size());
     draw_lit(bin_walls(scene_.bin, Wall::solid, view_, kLitFineness), colors[0], {.alpha = 1.0F, .highlight = 0.02F});
     for (std::size_t i = 0; i < scene_.tubes.size(); ++i)
       draw_lit(tube_mesh(scene_.tubes[i], Vec3::Zero(), kLitFineness), colors[i + 1],
@@ -160,7 +161,7 @@ class LitView {
     float fade_end = 2e6F;
   };
 
-  void draw_lit(Mesh mesh, Color color, const Material& material) {
+  void draw_lit(Mesh mesh, cloud::Color color, const Material& material) {
     dome_.shine_on(mesh);
     shading_.set("albedo", linear_from_encoded(color));
     shading_.set("alpha", material.alpha);
@@ -211,7 +212,7 @@ class LitView {
     const double reach = bounds_.diagonal().norm() * 1.5;
     const double top = bounds_.min().z();
     Mesh table;
-    add_box(Box(Vec3(-reach, -reach, top - 0.01), Vec3(reach, reach, top)), Vec3::Zero(),
+    add_box(scene::Box(Vec3(-reach, -reach, top - 0.01), Vec3(reach, reach, top)), Vec3::Zero(),
             {.facets = 4, .cell = reach / 60.0}, table);
     glEnable(GL_CULL_FACE);  // its dark lower side would show where the upper one fades
     draw_lit(std::move(table), 0xD5D9DF,
@@ -219,7 +220,7 @@ class LitView {
     glDisable(GL_CULL_FACE);
   }
 
-  const Scene& scene_;
+  const scene::Scene& scene_;
   View view_;
   Eigen::AlignedBox3d bounds_;
   const OffscreenContext& context_;
@@ -231,7 +232,7 @@ class LitView {
 
 }  // namespace
 
-Image draw_lit_view(const Scene& scene, int width, int height) {
+Image draw_lit_view(const scene::Scene& scene, int width, int height) {
   const Eigen::AlignedBox3d bounds = scene_bounds(scene);
   const View view = view_of(bounds, static_cast<double>(width) / height);
   const OffscreenContext context(width, height);
@@ -242,4 +243,4 @@ Image draw_lit_view(const Scene& scene, int width, int height) {
   return context.read();
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tubebin {
+namespace tubebin::render {
 
 MultisampleTarget::MultisampleTarget(const OffscreenContext& context) : context_(context) {
   GLint most_samples = 1;
@@ -34,4 +34,4 @@ void MultisampleTarget::resolve() const {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::render

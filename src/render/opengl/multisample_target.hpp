@@ -3,7 +3,7 @@
 
 #include "render/opengl/offscreen_context.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 
 class MultisampleTarget {
  public:
@@ -22,4 +22,4 @@ class MultisampleTarget {
   GLuint buffers_[2] = {0, 0};  ///< colour, depth
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::render

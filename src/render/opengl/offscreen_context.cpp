@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace tubebin {
+namespace tubebin::render {
 namespace {
 
 constexpr int kDepthBits = 24;
@@ -36,4 +36,4 @@ Image OffscreenContext::read() const {
   return image;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -8,7 +8,7 @@
 #include "render/opengl/functions.hpp"
 #include "tubebin/render/preview.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 
 /// The current context of this thread from construction on; one lives at a time. Throws std::runtime_error
 /// where there can be none of that size. Needs load_opengl().
@@ -32,4 +32,4 @@ class OffscreenContext {
   void* context_;                   ///< an OSMesaContext
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::render

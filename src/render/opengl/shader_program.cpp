@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace tubebin {
+namespace tubebin::render {
 namespace {
 
 GLuint compile(GLenum kind, const char* source) {
@@ -37,4 +37,4 @@ ShaderProgram::ShaderProgram(const char* vertex_source, const char* fragment_sou
 
 ShaderProgram::~ShaderProgram() { glDeleteProgram(program_); }
 
-}  // namespace tubebin
+}  // namespace tubebin::render

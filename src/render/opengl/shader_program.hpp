@@ -3,7 +3,7 @@
 
 #include "render/opengl/offscreen_context.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 
 class ShaderProgram {
  public:
@@ -27,4 +27,4 @@ class ShaderProgram {
   GLuint program_;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::render

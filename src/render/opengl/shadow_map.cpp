@@ -1,6 +1,6 @@
 #include "render/opengl/shadow_map.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 
 Eigen::Matrix4f map_from_world(const Eigen::Vector3f& to_light, const Ball& ball) {
   const Eigen::Vector3f u = to_light.unitOrthogonal();
@@ -61,4 +61,4 @@ std::vector<float> ShadowMap::read() const {
   return depths;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -6,7 +6,7 @@
 
 #include "render/opengl/offscreen_context.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 
 /// The ball that holds the scene.
 struct Ball {
@@ -44,4 +44,4 @@ class ShadowMap {
   GLuint framebuffer_ = 0;
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -3,9 +3,9 @@
 
 #include "tubebin/render/preview.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 
-Image draw_lit_view(const Scene& scene, int width, int height);
-Image draw_label_view(const Scene& scene, const PixelWindow& window);
+Image draw_lit_view(const scene::Scene& scene, int width, int height);
+Image draw_label_view(const scene::Scene& scene, const scene::PixelWindow& window);
 
-}  // namespace tubebin
+}  // namespace tubebin::render

@@ -6,7 +6,7 @@
 
 #include "tube/shapes/shapes.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 namespace {
 
 /// One path of the tree, between two numbered nodes.
@@ -38,7 +38,7 @@ class Branching : public CopiedShape<Branching> {
     for (std::size_t i = 0; i < paths_.size(); ++i) {
       const Branch& path = paths_[i];
       const std::string place = fmt::format("{}.paths[{}]", prefix, i);
-      tubebin::check(static_cast<const PathOptions&>(path), places, place);
+      tube::check(static_cast<const PathOptions&>(path), places, place);
       check_open_ends(path, options.radius, options.wall_thickness, places, place);
       if (i > 0 && !arms.contains(path.from))
         places.fail(place + ".from", fmt::format("no earlier path has the node {}", path.from));
@@ -84,4 +84,4 @@ class Branching : public CopiedShape<Branching> {
 
 std::unique_ptr<Shape> make_branching() { return std::make_unique<Branching>(); }
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

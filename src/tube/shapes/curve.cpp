@@ -4,7 +4,7 @@
 
 #include "tube/shapes/shapes.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 namespace {
 
 enum class Form { arcs, spline };
@@ -210,4 +210,4 @@ class Curve : public CopiedShape<Curve> {
 
 std::unique_ptr<Shape> make_curve() { return std::make_unique<Curve>(); }
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

@@ -3,7 +3,7 @@
 
 #include "tube/shapes/shapes.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 namespace {
 
 struct Entry {
@@ -52,4 +52,4 @@ void ShapeChoice::describe(Fields& fields) {
   if (index != index_) *this = ShapeChoice(index);
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

@@ -3,7 +3,7 @@
 
 #include "tube/shapes/shapes.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 namespace {
 
 class Ring : public CopiedShape<Ring> {
@@ -47,4 +47,4 @@ class Ring : public CopiedShape<Ring> {
 
 std::unique_ptr<Shape> make_ring() { return std::make_unique<Ring>(); }
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

@@ -3,7 +3,7 @@
 
 #include "tubebin/tube/tube_generator.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 
 std::unique_ptr<Shape> make_chain();
 std::unique_ptr<Shape> make_branching();
@@ -20,4 +20,4 @@ class CopiedShape : public Shape {
   }
 };
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

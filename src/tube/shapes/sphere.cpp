@@ -1,7 +1,7 @@
 // A ball of the tube's radius: one node without cylinders.
 #include "tube/shapes/shapes.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 namespace {
 
 class Sphere : public CopiedShape<Sphere> {
@@ -19,4 +19,4 @@ class Sphere : public CopiedShape<Sphere> {
 
 std::unique_ptr<Shape> make_sphere() { return std::make_unique<Sphere>(); }
 
-}  // namespace tubebin
+}  // namespace tubebin::tube

@@ -1,0 +1,16 @@
+/// The labelled points of a run of model_tubes, for the report's pictures.
+#pragma once
+
+#include <optional>
+
+#include "tubebin/evaluation/scene_picture.hpp"
+
+namespace tubebin::results {
+
+/// From the run's clouds where they were kept, else modelled again with the run's own options and seed, which
+/// gives the same labels. Nothing where neither is possible, or where modelling again gives another
+/// micro-recall, as another version of the program may. Throws IoError where a file of the run or of its data
+/// set is damaged.
+std::optional<evaluation::LabelledPoints> labelled_points(const evaluation::RunScore& run);
+
+}  // namespace tubebin::results

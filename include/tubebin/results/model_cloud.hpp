@@ -1,0 +1,56 @@
+/// Modelling one cloud file: what is known about its scene goes in beside it, and its results become files.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "tubebin/modeling/pipeline.hpp"
+#include "tubebin/results/cloud_files.hpp"
+#include "tubebin/scene/scene_json.hpp"
+
+namespace tubebin::results {
+
+/// Where the bin that is cropped comes from.
+enum class BinSource {
+  automatic,  ///< scene.json beside the cloud; without one, the cloud
+  config,     ///< the configuration's `bin`
+  cloud       ///< floor and walls are found in the cloud
+};
+
+/// Everything that model_tubes can be told.
+struct ModelConfig {
+  modeling::ModelingOptions modeling;
+  BinSource bin_source = BinSource::automatic;
+  scene::Bin bin;
+  Vec3 viewpoint = Vec3::Zero();  ///< metres; zero: as the cloud says
+};
+
+void describe(Fields& fields, ModelConfig& config);
+/// Throws ConfigError.
+ModelConfig load_model_config(const std::string& path);
+
+/// A cloud and what scene.json beside it says.
+struct CloudToModel {
+  std::string path;
+  cloud::Cloud cloud;
+  std::optional<scene::SceneRecord> scene;
+  double read_seconds = 0.0;
+};
+
+/// Reads the cloud, its coordinates times `scale`, and scene.json in its folder if there is one. Throws IoError.
+CloudToModel read_cloud_to_model(const std::string& path, double scale = 1.0);
+
+/// The same of a scene of a data set.
+CloudToModel read_cloud_to_model(const scene::DatasetFiles& files, const CloudFile& cloud);
+
+/// Models the cloud: its positions, its viewpoint and the scene's bin, nothing else of what is there. Throws IoError.
+modeling::ModelingResult model_cloud(const CloudToModel& input, const ModelConfig& config);
+
+/// The filtered points as they were, colours and labels included, in the input's order.
+cloud::Cloud filtered_cloud(const cloud::Cloud& input, const modeling::ModelingResult& result);
+/// The same points in the colours (label_colors) and with the labels of the tubes found.
+cloud::Cloud labeled_cloud(const cloud::Cloud& input, const modeling::ModelingResult& result);
+/// Colours of label 0 (the null colour) and every tube found.
+std::vector<cloud::Color> model_colors(const modeling::ModelingResult& result);
+
+}  // namespace tubebin::results

@@ -1,0 +1,170 @@
+#include "calibration/calibration_trials.hpp"
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "calibration/number_fields.hpp"
+#include "jobs/stop_note.hpp"
+#include "tubebin/core/file_record.hpp"
+#include "tubebin/core/version.hpp"
+#include "tubebin/dataset/dataset_config.hpp"
+#include "tubebin/dataset/manifest.hpp"
+#include "tubebin/evaluation/micro_recall.hpp"
+
+namespace tubebin::calibration {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// All that a recall depends on beside what each line of the journal says.
+std::string format_header(const results::ModelConfig& start) {
+  results::ModelConfig config = start;
+  Json options = Json::object();
+  for (const auto& [key, value] : list_fields([&](Fields& fields) { describe(fields, config); }))
+    if (key != "filtering.ratio") options[key] = value;
+  return Json{{"format", "tubebin calibration 1"}, {"tool_version", tool_version()}, {"options", options}}.dump();
+}
+
+double micro_recall_of(const results::CloudToModel& input, const modeling::ModelingResult& result) {
+  const std::vector<cloud::Label> truth = results::truth_labels(input);
+  std::vector<evaluation::SegmentId> truth_ids, predicted_ids;
+  for (std::size_t k = 0; k < result.source.size(); ++k) {
+    truth_ids.push_back(truth[result.source[k]]);
+    predicted_ids.push_back(result.labels[k]);
+  }
+  return evaluation::match_segments(evaluation::count_pairs(truth_ids, predicted_ids, evaluation::SegmentId{0}))
+      .micro_recall();
+}
+
+}  // namespace
+
+results::ModelConfig apply_setting(const results::ModelConfig& config, const std::vector<TunedParameter>& parameters,
+                                   const Setting& setting) {
+  results::ModelConfig own = config;
+  const auto fields = number_fields([&](Fields& visitor) { describe(visitor, own); });
+  for (std::size_t p = 0; p < parameters.size(); ++p) fields.at(parameters[p].key).set(setting[p]);
+  return own;
+}
+
+Setting setting_of(const results::ModelConfig& config, const std::vector<TunedParameter>& parameters) {
+  results::ModelConfig own = config;
+  const auto fields = number_fields([&](Fields& visitor) { describe(visitor, own); });
+  Setting setting;
+  for (const TunedParameter& parameter : parameters) setting.push_back(fields.at(parameter.key).get());
+  return setting;
+}
+
+CalibrationTrials::CalibrationTrials(const std::string& folder, const CalibrationOptions& options,
+                                     const scene::DatasetFiles& dataset, const results::ModelConfig& start,
+                                     std::vector<TunedParameter> parameters, jobs::Progress& progress)
+    : options_(options),
+      dataset_(dataset),
+      start_(start),
+      parameters_(std::move(parameters)),
+      progress_(progress),
+      journal_(folder + "/runs.jsonl") {
+  read_journal();
+}
+
+void CalibrationTrials::read_journal() {
+  const std::string header = format_header(start_);
+  if (journal_.lines().empty()) return journal_.append(header);
+  if (journal_.lines().front() != header)
+    throw_config_error("{}: is of another configuration or version; remove its folder or choose another --output",
+                       journal_.path());
+  for (std::size_t i = 1; i < journal_.lines().size(); ++i) {
+    try {
+      Json line = Json::parse(journal_.lines()[i]);
+      const double recall = line.at("micro_recall");
+      line.erase("micro_recall");
+      line.erase("failed");
+      recall_of_[line.dump()] = recall;
+    } catch (const Json::exception& error) {
+      throw_io_error("{}:{}: is no trial: {}; remove the line", journal_.path(), i + 1, error.what());
+    }
+  }
+}
+
+/// The line without its result. The cloud's hash is in it, so that no recall is of a cloud that was made anew.
+CalibrationTrials::Key CalibrationTrials::key_of(const Setting& setting, const results::ModelingRun& run) {
+  Json values = Json::object();
+  for (std::size_t p = 0; p < parameters_.size(); ++p) values[parameters_[p].key] = setting[p];
+  return Json{{"scene", run.scene}, {"cloud", cloud_hash(run)}, {"ratio", run.ratio}, {"setting", values}}.dump();
+}
+
+std::string CalibrationTrials::cloud_hash(const results::ModelingRun& run) {
+  std::string& hash = hash_of_cloud_[run.scene];
+  if (hash.empty()) hash = record_bytes(dataset_.read(run.scene, run.cloud)).xxh128;
+  return hash;
+}
+
+std::vector<std::vector<double>> CalibrationTrials::recalls(const std::vector<Setting>& settings,
+                                                            const std::vector<results::ModelingRun>& runs) {
+  std::vector<Trial> missing;
+  std::vector<std::vector<Key>> keys;
+  std::set<Key> wanted;
+  for (const Setting& setting : settings) {
+    keys.emplace_back();
+    for (const results::ModelingRun& run : runs) {
+      const Key key = key_of(setting, run);
+      keys.back().push_back(key);
+      if (!recall_of_.contains(key)) {
+        if (wanted.insert(key).second) missing.push_back({setting, run, key});
+      } else if (!std::exchange(used_[key], true)) {
+        ++runs_before_;
+        progress_.count_done();
+      }
+    }
+  }
+  find_missing(missing);
+  std::vector<std::vector<double>> recalls;
+  for (const std::vector<Key>& of_setting : keys) {
+    recalls.emplace_back();
+    for (const Key& key : of_setting) recalls.back().push_back(recall_of_.at(key));
+  }
+  return recalls;
+}
+
+void CalibrationTrials::find_missing(const std::vector<Trial>& missing) {
+  if (const int signal = jobs::StopNote::received(); signal != 0) throw CalibrationStopped{signal};
+  if (missing.empty()) return;
+  std::vector<std::size_t> jobs(missing.size());
+  for (std::size_t i = 0; i < jobs.size(); ++i) jobs[i] = i;
+  const jobs::PoolOptions pool{.workers = options_.jobs, .attempts_max = 1, .attempt_time_limit = options_.time_limit};
+  const jobs::PoolEvents events{
+      .on_finished = [&](const jobs::JobOutcome& outcome) { keep(missing[outcome.job], outcome); },
+      .on_tick = [&] { progress_.show(); }};
+  const jobs::PoolReport report = jobs::run_jobs(
+      jobs, pool, [&](std::size_t job, int) { return attempt(missing[job]); }, events);
+  if (report.signal != 0) throw CalibrationStopped{report.signal};
+}
+
+/// In a worker process.
+jobs::AttemptResult CalibrationTrials::attempt(const Trial& trial) const {
+  const results::CloudToModel input = results::read_cloud_to_model(dataset_, {trial.run.scene, trial.run.cloud});
+  if (results::truth_labels(input).empty())
+    throw_io_error("{}: has no labels, and no colours of a scene.json beside it, to compare with", input.path);
+  const results::ModelConfig config = results::run_config(apply_setting(start_, parameters_, trial.setting), trial.run);
+  const double recall = micro_recall_of(input, results::model_cloud(input, config));
+  return jobs::successful_attempt([recall] { return fmt::format("{}", recall); });
+}
+
+void CalibrationTrials::keep(const Trial& trial, const jobs::JobOutcome& outcome) {
+  Json line = Json::parse(trial.key);
+  if (!outcome.succeeded) {
+    const jobs::FailedAttempt& last = outcome.failed.back();
+    if (last.reason == "killed")
+      throw_io_error("{}: {}", dataset_.place(trial.run.scene, trial.run.cloud), last.detail);
+    line["failed"] = last.reason;
+    ++failed_;
+  }
+  const double recall = outcome.succeeded ? std::stod(outcome.text) : 0.0;
+  line["micro_recall"] = recall;
+  journal_.append(line.dump());
+  recall_of_[trial.key] = recall;
+  used_[trial.key] = true;
+  ++runs_made_;
+  progress_.count_done();
+}
+
+}  // namespace tubebin::calibration

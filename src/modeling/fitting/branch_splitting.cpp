@@ -1,0 +1,92 @@
+#include "modeling/fitting/branch_splitting.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace tubebin::modeling {
+namespace {
+
+/// The voxels farther than `reach` metres from the way, by the connected parts that they make up.
+/// `distance`: of each voxel from the way.
+std::vector<std::vector<std::uint32_t>> parts_off(const VoteGraph& graph, const std::vector<double>& distance,
+                                                  double reach) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
+  for (std::uint32_t i = 0; i < graph.size(); ++i)
+    for (const std::uint32_t j : graph.linked(i))
+      if (i < j && distance[i] > reach && distance[j] > reach) links.emplace_back(i, j);
+  const std::vector<std::uint32_t> part = connected_components(graph.size(), links);
+  std::vector<std::vector<std::uint32_t>> parts(part.empty() ? 0 : 1 + *std::max_element(part.begin(), part.end()));
+  for (std::uint32_t i = 0; i < graph.size(); ++i)
+    if (distance[i] > reach) parts[part[i]].push_back(i);
+  std::erase_if(parts, [](const auto& voxels) { return voxels.empty(); });
+  return parts;
+}
+
+/// Where the way from the end of the graph turns back: its distance from that end. Two tubes side by side whose ends are
+/// flush may hang together by the votes of their flat ends. No tube turns by 120 degrees within so few radii.
+std::optional<double> turning_point(const VoteGraph& graph, const std::vector<std::uint32_t>& way, double radius) {
+  const double window = 4.0 * radius;
+  const auto& distance = graph.distances_from_end();
+  const auto place = [&](std::size_t k) { return Vec3(graph.mean(way[k]).cast<double>()); };
+  std::optional<double> turn;
+  double sharpest = -0.5;
+  std::size_t before = 0, after = 0;  // the last voxel a window farther from the end, the first one a window nearer
+  for (std::size_t k = 0; k < way.size(); ++k) {
+    while (before + 1 < k && distance[way[before + 1]] >= distance[way[k]] + window) ++before;
+    while (after < way.size() && distance[way[after]] > distance[way[k]] - window) ++after;
+    if (after == way.size()) break;
+    if (distance[way[before]] < distance[way[k]] + window) continue;
+    const double cosine = (place(k) - place(before)).normalized().dot((place(after) - place(k)).normalized());
+    if (cosine < sharpest) sharpest = cosine, turn = distance[way[k]];
+  }
+  return turn;
+}
+
+/// The segment's parts nearer to the graph's end than `cut` metres, and the others.
+std::vector<Segment> cut_across(const VoteGraph& graph, const Segment& segment, double cut) {
+  std::vector<Segment> parts(2);
+  for (std::size_t k = 0; k < segment.size(); ++k)
+    parts[graph.distances_from_end()[graph.voxel_of(k)] < cut ? 0 : 1].push_back(segment[k]);
+  return parts;
+}
+
+}  // namespace
+
+std::vector<Stretch> split_branches(const FilteredCloud& cloud, const Segment& segment, double radius) {
+  VoteGraph graph(cloud, segment, radius);
+  const std::vector<std::uint32_t> way = graph.longest_way();
+  if (const auto turn = turning_point(graph, way, radius)) {
+    std::vector<Stretch> stretches;
+    for (const Segment& part : cut_across(graph, segment, *turn))
+      for (Stretch& stretch : split_branches(cloud, part, radius)) stretches.push_back(std::move(stretch));
+    return stretches;
+  }
+  // A flat end's votes lie up to a radius beside the line, and scatter by half as much. A part that reaches two radii
+  // farther is longer than it is wide.
+  const double reach = 1.5 * radius, least = 3.5 * radius;
+  const std::vector<double> distance = graph.distances_from(way);
+  std::vector<std::uint32_t> segment_of_voxel(graph.size(), 0);
+  std::uint32_t segments = 1;
+  for (const auto& part : parts_off(graph, distance, reach)) {
+    double farthest = 0.0;
+    for (const std::uint32_t i : part) farthest = std::max(farthest, distance[i]);
+    if (farthest < least) continue;
+    for (const std::uint32_t i : part) segment_of_voxel[i] = segments;
+    ++segments;
+  }
+  std::vector<Stretch> result;
+  if (segments == 1) {
+    result.push_back({segment, std::move(graph)});
+    return result;
+  }
+
+  std::vector<Segment> split(segments);
+  for (std::size_t k = 0; k < segment.size(); ++k) split[segment_of_voxel[graph.voxel_of(k)]].push_back(segment[k]);
+  VoteGraph longest(cloud, split.front(), radius);
+  result.push_back({std::move(split.front()), std::move(longest)});
+  for (std::size_t s = 1; s < split.size(); ++s)
+    for (Stretch& part : split_branches(cloud, split[s], radius)) result.push_back(std::move(part));
+  return result;
+}
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,75 @@
+#include "modeling/fitting/centerline_pieces.hpp"
+
+#include <algorithm>
+
+#include "modeling/fitting/branch_splitting.hpp"
+#include "modeling/fitting/centerline_fitting.hpp"
+#include "modeling/fitting/centerline_segmentation.hpp"
+#include "modeling/fitting/flat_ends.hpp"
+#include "modeling/fitting/piece_cleaning.hpp"
+#include "tubebin/modeling/filtering.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// The points that no segment holds, in order of x.
+std::vector<SurfacePoint> loose_points(const FilteredCloud& cloud, const std::vector<Segment>& segments) {
+  std::vector<bool> is_held(cloud.points.size(), false);
+  for (const Segment& segment : segments)
+    for (const std::uint32_t i : segment) is_held[i] = true;
+  std::vector<SurfacePoint> loose;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+    if (!is_held[i]) loose.push_back({cloud.points[i].cast<double>(), cloud.normals[i].cast<double>()});
+  std::ranges::stable_sort(loose, {}, [](const SurfacePoint& point) { return point.position.x(); });
+  return loose;
+}
+
+std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vector<Segment>& segments,
+                                    const ViewProjection& projection, double radius) {
+  const std::vector<SurfacePoint> loose = loose_points(cloud, segments);
+  const Vec3 viewpoint = projection.viewpoint().cast<double>();
+  std::vector<TubePiece> pieces;
+  for (const Segment& segment : segments)
+    for (const Stretch& stretch : split_branches(cloud, segment, radius))
+      if (auto piece = fit_centerline(cloud, stretch, loose, radius, viewpoint)) pieces.push_back(std::move(*piece));
+  return pieces;
+}
+
+/// The selected points as a cloud of their own; `source` are their places in `cloud`.
+FilteredCloud part_of(const FilteredCloud& cloud, Segment selected, const ViewProjection& projection, double radius) {
+  FilteredCloud part{.source = std::move(selected), .points = {}, .normals = {}, .spacing = cloud.spacing};
+  for (const std::uint32_t i : part.source) part.points.push_back(cloud.points[i]);
+  add_normals(part, projection, radius);
+  return part;
+}
+
+/// What of `rest`, a part of `cloud`, no piece explains.
+FilteredCloud still_unexplained(const FilteredCloud& rest, const FilteredCloud& cloud,
+                                const std::vector<TubePiece>& pieces, const ViewProjection& projection, double radius) {
+  Segment selected;
+  for (const std::uint32_t i : unexplained_points(rest.points, pieces, rest.spacing))
+    selected.push_back(rest.source[i]);
+  return part_of(cloud, std::move(selected), projection, radius);
+}
+
+}  // namespace
+
+std::vector<TubePiece> find_centerline_pieces(const FilteredCloud& cloud, const std::vector<Segment>& segments,
+                                              const ViewProjection& projection, double radius) {
+  std::vector<TubePiece> pieces = fit_segments(cloud, segments, projection, radius);
+  drop_explained_pieces(pieces, cloud.points, cloud.spacing);
+
+  FilteredCloud rest = part_of(cloud, unexplained_points(cloud.points, pieces, cloud.spacing), projection, radius);
+  fit_flat_ends(pieces, cloud, rest);
+
+  rest = still_unexplained(rest, cloud, pieces, projection, radius);
+  for (TubePiece& piece : fit_segments(rest, segment_by_votes(rest, radius), projection, radius)) {
+    for (std::uint32_t& i : piece.points) i = rest.source[i];
+    pieces.push_back(std::move(piece));
+  }
+  fit_flat_ends(pieces, cloud, rest);
+  cut_overlaps(pieces);
+  return pieces;
+}
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,41 @@
+/// Ways through the centreline votes of one segment.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "modeling/fitting/vote_voxels.hpp"
+#include "tubebin/modeling/filtering.hpp"
+#include "tubebin/modeling/tube_model.hpp"
+
+namespace tubebin::modeling {
+
+/// Voxels of votes as the vertices of a graph: those whose mean votes are at most half a radius apart are linked.
+class VoteGraph {
+ public:
+  /// All votes of the segment, since some alone may leave gaps wider than a link.
+  VoteGraph(const FilteredCloud& cloud, const Segment& segment, double radius);
+
+  std::size_t size() const { return voxels_.size(); }
+  const cloud::Point& mean(std::size_t voxel) const { return voxels_.mean(voxel); }
+  std::size_t count(std::size_t voxel) const { return voxels_.count(voxel); }
+  /// Voxel of the segment's point k.
+  std::uint32_t voxel_of(std::size_t k) const { return voxels_.voxel_of(k); }
+  std::span<const std::uint32_t> linked(std::uint32_t voxel) const { return linked_[voxel]; }
+
+  /// Length of the shortest way from each voxel to the nearest of `sources`, metres; infinite where there is none.
+  std::vector<double> distances_from(std::span<const std::uint32_t> sources) const;
+  /// One end of the longest way through the part that holds most votes: the farthest voxel from any is an end.
+  std::uint32_t end() const { return end_; }
+  const std::vector<double>& distances_from_end() const { return distances_from_end_; }
+  /// The voxels along that way.
+  std::vector<std::uint32_t> longest_way() const;
+
+ private:
+  VoteVoxels voxels_;
+  std::vector<std::vector<std::uint32_t>> linked_;
+  std::uint32_t end_ = 0;
+  std::vector<double> distances_from_end_;
+};
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,139 @@
+#include "tubebin/modeling/filtering.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "modeling/input/bin_planes.hpp"
+#include "modeling/input/normals.hpp"
+#include "modeling/input/view_grid.hpp"
+#include "tubebin/core/error.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// A number that the seed and the point's position determine.
+std::uint64_t position_key(const cloud::Point& point, std::uint64_t seed) {
+  const auto x = std::bit_cast<std::uint32_t>(point.x());
+  const auto y = std::bit_cast<std::uint32_t>(point.y());
+  const auto z = std::bit_cast<std::uint32_t>(point.z());
+  return derive_seed({seed, (std::uint64_t{x} << 32) | y, z});
+}
+
+}  // namespace
+
+void describe(Fields& fields, FilteringOptions& options) {
+  fields.number("ratio", options.ratio, {1e-6, 1.0}, "", "part of the tube points that stays, chosen at random");
+  fields.number("bin_margin", options.bin_margin, {0.0, 1.0}, "m",
+                "points closer than this to the bin's floor or walls go; several times the scanner's noise");
+  fields.flag("remove_outliers", options.remove_outliers,
+              "drop points with few neighbours, as real scanners make at edges");
+}
+
+std::vector<std::uint32_t> crop_bin(const ModelingInput& input, const FilteringOptions& options) {
+  const scene::Bin& bin = *input.bin;
+  const Eigen::Isometry3f bin_from_world = input.world_from_bin.inverse().cast<float>();
+  const auto margin = static_cast<float>(options.bin_margin);
+  const float x_max = static_cast<float>(bin.length / 2.0) - margin;
+  const float y_max = static_cast<float>(bin.width / 2.0) - margin;
+  const float rim = static_cast<float>(bin.height) + margin;
+  std::vector<std::uint32_t> inside;
+  for (std::uint32_t i = 0; i < input.points.size(); ++i) {
+    const cloud::Point p = bin_from_world * input.points[i];
+    // Comparisons with NaN are false: pixels that hit nothing fall out here too.
+    const bool between_walls = std::abs(p.x()) < x_max && std::abs(p.y()) < y_max && p.z() > margin;
+    if (between_walls || (p.z() > rim && cloud::is_finite(p))) inside.push_back(i);
+  }
+  return inside;
+}
+
+std::vector<std::uint32_t> downsample(std::span<const cloud::Point> points, std::vector<std::uint32_t> indices,
+                                      double ratio, std::uint64_t seed) {
+  const auto kept = static_cast<std::size_t>(std::max(std::round(ratio * static_cast<double>(indices.size())), 1.0));
+  if (kept >= indices.size()) return indices;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed;
+  keyed.reserve(indices.size());
+  for (const std::uint32_t i : indices) keyed.emplace_back(position_key(points[i], seed), i);
+  std::nth_element(keyed.begin(), keyed.begin() + static_cast<std::ptrdiff_t>(kept), keyed.end());
+  keyed.resize(kept);
+  indices.clear();
+  for (const auto& [key, i] : keyed) indices.push_back(i);
+  std::sort(indices.begin(), indices.end());
+  return indices;
+}
+
+std::vector<std::uint32_t> remove_outliers(const ViewProjection& projection, std::span<const cloud::Point> points,
+                                           const std::vector<std::uint32_t>& indices) {
+  std::vector<cloud::Point> selected;
+  for (const std::uint32_t i : indices) selected.push_back(points[i]);
+  const double reach = 3.0 * estimate_spacing(projection.images(selected));
+  const std::vector<int> counts = count_neighbors(projection, selected, reach);
+  // Within three spacings lie some 28 points of a surface, half of them at its edges.
+  constexpr int kLeast = 9;
+  std::vector<std::uint32_t> kept;
+  for (std::size_t k = 0; k < indices.size(); ++k)
+    if (counts[k] >= kLeast) kept.push_back(indices[k]);
+  return kept;
+}
+
+double normal_radius(double spacing, double radius) {
+  const double many = 2.8 * spacing, enough = 2.25 * spacing;  // 2.8^2 pi = 25 points, 16 points
+  if (radius <= 0.0) return many;
+  return std::max({std::min(many, 0.5 * radius), std::min(enough, 0.6 * radius), 1.5 * spacing});
+}
+
+double points_of_visible_stretch(double radius, double length, double spacing) {
+  return 2.0 * radius * length / (spacing * spacing);
+}
+
+ViewProjection view_of(const ModelingInput& input) {
+  Eigen::AlignedBox3f box;
+  for (const cloud::Point& p : input.points)
+    if (cloud::is_finite(p)) box.extend(p);
+  return {input.world_from_sensor, box.isEmpty() ? cloud::Point(cloud::Point::Zero()) : cloud::Point(box.center())};
+}
+
+FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, const FilteringOptions& options,
+                     std::uint64_t seed) {
+  auto indices = input.bin ? crop_bin(input, options) : crop_planes(input, projection, options, seed);
+  if (options.remove_outliers) indices = remove_outliers(projection, input.points, indices);
+  if (indices.empty()) throw IoError("no point lies in the bin: is its place right, and is the cloud in metres?");
+  indices = downsample(input.points, std::move(indices), options.ratio, seed);
+
+  // In the order of the scanner's view, which the points' positions alone determine.
+  std::vector<cloud::Point> points;
+  for (const std::uint32_t i : indices) points.push_back(input.points[i]);
+  FilteredCloud cloud;
+  ViewProjection::Images images = projection.images(points);
+  cloud.spacing = estimate_spacing(images);
+  const double range = double(images.range.front());
+  const ViewGrid grid(std::move(images), points, static_cast<float>(std::max(2.0 * cloud.spacing / range, 1e-6)));
+  for (const std::uint32_t k : grid.order()) {
+    cloud.source.push_back(indices[k]);
+    cloud.points.push_back(points[k]);
+  }
+  return cloud;
+}
+
+void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double radius) {
+  cloud.normals = estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, radius));
+}
+
+FilteredCloud thinned(const FilteredCloud& cloud, double apart, const ViewProjection& projection, double radius) {
+  const double step = apart / cloud.spacing;
+  const auto stride = static_cast<std::size_t>(std::max(std::round(step * step), 1.0));
+  const auto select = [stride](const auto& all) {
+    std::remove_cvref_t<decltype(all)> selected;
+    for (std::size_t i = 0; i < all.size(); i += stride) selected.push_back(all[i]);
+    return selected;
+  };
+  FilteredCloud sample{.source = select(cloud.source),
+                       .points = select(cloud.points),
+                       .normals = select(cloud.normals),
+                       .spacing = cloud.spacing * std::sqrt(static_cast<double>(stride))};
+  if (cloud.normals.empty())
+    sample.normals = estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, radius), stride);
+  return sample;
+}
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,129 @@
+#include "modeling/input/radius_estimation.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "modeling/input/view_grid.hpp"
+#include "modeling/median.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// Largest principal curvature at a point: the symmetric 2 x 2 map from tangent offsets to changes of the normal, by
+/// least squares over its neighbours. 0 where the surface curves both ways.
+double cylinder_curvature(const cloud::Point& p, const cloud::Point& n,
+                          const std::vector<std::pair<cloud::Point, cloud::Point>>& neighbors) {
+  const cloud::Point u = n.unitOrthogonal();
+  const cloud::Point v = n.cross(u);
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero(), turn = Eigen::Matrix2d::Zero();
+  for (const auto& [q, m] : neighbors) {
+    const Eigen::Vector2d offset(double((q - p).dot(u)), double((q - p).dot(v)));
+    const Eigen::Vector2d change(double((m - n).dot(u)), double((m - n).dot(v)));
+    scatter += offset * offset.transpose();
+    turn += change * offset.transpose();
+  }
+  if (scatter.determinant() <= 0.0) return 0.0;
+  const Eigen::Matrix2d shape = turn * scatter.inverse();
+  const Eigen::Vector2d k =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(0.5 * (shape + shape.transpose())).eigenvalues();
+  return k(1) > 0.0 && std::abs(k(0)) < 0.3 * k(1) ? k(1) : 0.0;
+}
+
+/// A radius and how much it counts: 1 / variance.
+struct MeasuredRadius {
+  double radius = 0.0, weight = 0.0;
+};
+
+/// Of the circle about the origin, more or less, from which the points' distances have the least squares:
+/// Gauss-Newton from `radius`. (The algebraic fit, which is linear, makes circles too small where there is noise.)
+/// A narrow arc says little of its radius, and its variance shows it.
+MeasuredRadius fit_circle(const std::vector<Eigen::Vector2d>& points, double radius) {
+  constexpr int kSteps = 4;
+  const auto count = static_cast<double>(points.size());
+  Vec3 circle(0.0, 0.0, radius);  // centre and radius
+  double variance = 0.0;
+  for (int step = 0; step < kSteps; ++step) {
+    Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
+    Vec3 right = Vec3::Zero();
+    double squares = 0.0;
+    for (const Eigen::Vector2d& p : points) {
+      const Eigen::Vector2d offset = p - circle.head<2>();
+      const double distance = std::max(offset.norm(), 1e-12), residual = distance - circle.z();
+      const Vec3 row(offset.x() / distance, offset.y() / distance, 1.0);
+      normal_matrix += row * row.transpose();
+      right += residual * row;
+      squares += residual * residual;
+    }
+    const auto factors = normal_matrix.ldlt();
+    circle += factors.solve(right);
+    variance = squares / count * factors.solve(Vec3::UnitZ()).z();
+  }
+  return {circle.z(), 1.0 / std::max(variance, 1e-18)};
+}
+
+/// The radius that as much weight lies below as above.
+double weighted_median(std::vector<MeasuredRadius> radii) {
+  std::sort(radii.begin(), radii.end(), [](const auto& a, const auto& b) { return a.radius < b.radius; });
+  double half = 0.0;
+  for (const MeasuredRadius& r : radii) half += r.weight / 2.0;
+  std::size_t k = 0;
+  for (double below = radii[0].weight; below < half; below += radii[k].weight) ++k;
+  return radii[k].radius;
+}
+
+}  // namespace
+
+double estimate_radius(const std::vector<cloud::Point>& points, const std::vector<cloud::Point>& normals,
+                       const ViewProjection& projection, double spacing) {
+  if (points.empty()) return 0.0;
+  // Some hundred places are enough for a median. Neighbours within four spacings, about fifty of them.
+  constexpr std::size_t kPlaces = 400;
+  const std::size_t stride = points.size() / kPlaces + 1;
+  const double reach = 4.0 * spacing;
+  const auto squared_reach = static_cast<float>(reach * reach);
+  float nearest = std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < points.size(); i += stride)
+    nearest = std::min(nearest, (points[i] - projection.viewpoint()).norm());
+  const ViewGrid grid(projection, points, static_cast<float>(reach / std::max(double(nearest), reach)));
+  std::vector<double> radii;
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    if (normals[i].isZero()) continue;
+    std::vector<std::pair<cloud::Point, cloud::Point>> neighbors;
+    for (int row = grid.row(i) - 1; row <= grid.row(i) + 1; ++row) {
+      const auto [first, last] = grid.range(row, grid.column(i) - 1, grid.column(i) + 1);
+      for (std::uint32_t k = first; k < last; ++k) {
+        const std::uint32_t j = grid.order()[k];
+        if ((points[j] - points[i]).squaredNorm() < squared_reach && normals[j].dot(normals[i]) > 0.5f)
+          neighbors.emplace_back(points[j], normals[j]);
+      }
+    }
+    const double curvature = neighbors.size() < 6 ? 0.0 : cylinder_curvature(points[i], normals[i], neighbors);
+    if (curvature > 0.0) radii.push_back(1.0 / curvature);
+  }
+  return radii.size() < 10 ? 0.0 : median(radii);
+}
+
+double refine_radius(const std::vector<TubePiece>& pieces, const std::vector<cloud::Point>& points, double radius) {
+  std::vector<MeasuredRadius> radii;
+  for (const TubePiece& piece : pieces)
+    for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
+      const Vec3 start = piece.nodes[k], along = piece.nodes[k + 1] - start;
+      const double length = along.norm();
+      if (length < 2.0 * radius) continue;
+      const Vec3 axis = along / length, u = axis.unitOrthogonal(), v = axis.cross(u);
+      std::vector<Eigen::Vector2d> across;
+      for (const std::uint32_t i : piece.points) {
+        const Vec3 offset = points[i].cast<double>() - start;
+        const double t = offset.dot(axis);
+        const Eigen::Vector2d p(offset.dot(u), offset.dot(v));
+        if (t >= 0.0 && t <= length && std::abs(p.norm() - radius) < radius / 4.0) across.push_back(p);
+      }
+      if (across.size() >= 30) radii.push_back(fit_circle(across, radius));
+    }
+  return radii.empty() ? radius : weighted_median(std::move(radii));
+}
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,88 @@
+#include "tubebin/modeling/scan_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tubebin/core/wide.hpp"
+
+namespace tubebin::modeling {
+
+ViewProjection::ViewProjection(const Pose& world_from_sensor, const cloud::Point& middle_of_points)
+    : viewpoint_(world_from_sensor.translation().cast<float>()) {
+  const Vec3 to_middle = (middle_of_points.cast<double>() - world_from_sensor.translation());
+  Vec3 z = world_from_sensor.linear().col(2);
+  if (z.dot(to_middle) < 0.5 * to_middle.norm()) z = to_middle;
+  z.normalize();
+  Vec3 x = world_from_sensor.linear().col(0);
+  if (std::abs(x.dot(z)) > 0.9) x = world_from_sensor.linear().col(1);
+  x = (x - x.dot(z) * z).normalized();
+  axes_from_world_.row(0) = x.cast<float>();
+  axes_from_world_.row(1) = z.cross(x).cast<float>();
+  axes_from_world_.row(2) = z.cast<float>();
+}
+
+namespace {
+
+/// Plain arrays that do not overlap, of which vector instructions are made.
+TUBEBIN_WIDE void project_arrays(const ViewProjection& projection, const cloud::Point* __restrict points,
+                                 std::size_t count, float* __restrict u, float* __restrict v, float* __restrict range) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const ViewProjection::Image image = projection(points[i]);
+    u[i] = image.u, v[i] = image.v, range[i] = image.range;
+  }
+}
+
+/// Calls visit(image) for every point that is finite.
+template <typename Visit>
+void for_each_image(const ViewProjection& projection, std::span<const cloud::Point> points, const Visit& visit) {
+  // In blocks that stay in the processor's cache: to project twice costs less than to keep the images of a whole cloud.
+  constexpr std::size_t kBlock = 512;
+  ViewProjection::Images images;
+  for (std::size_t first = 0; first < points.size(); first += kBlock) {
+    projection.project(points.subspan(first, std::min(kBlock, points.size() - first)), images);
+    for (std::size_t i = 0; i < images.size(); ++i)
+      if (images.range[i] < std::numeric_limits<float>::infinity()) visit(images[i]);
+  }
+}
+
+}  // namespace
+
+void ViewProjection::project(std::span<const cloud::Point> points, Images& images) const {
+  for (auto* quantity : {&images.u, &images.v, &images.range}) quantity->resize(points.size());
+  project_arrays(*this, points.data(), points.size(), images.u.data(), images.v.data(), images.range.data());
+}
+
+RangeImage::RangeImage(const ViewProjection& projection, std::span<const cloud::Point> points, float cell)
+    : projection_(projection), inverse_cell_(1.0f / cell) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  float u_min = kInfinity, v_min = kInfinity, u_max = -kInfinity, v_max = -kInfinity;
+  for_each_image(projection, points, [&](const ViewProjection::Image& image) {
+    u_min = std::min(u_min, image.u), u_max = std::max(u_max, image.u);
+    v_min = std::min(v_min, image.v), v_max = std::max(v_max, image.v);
+  });
+  if (u_max < u_min) return;
+  u_min_ = u_min, v_min_ = v_min;
+  columns_ = static_cast<int>((u_max - u_min_) * inverse_cell_) + 1;
+  rows_ = static_cast<int>((v_max - v_min_) * inverse_cell_) + 1;
+  nearest_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), kInfinity);
+  for_each_image(projection, points, [&](const ViewProjection::Image& image) {
+    const int column = static_cast<int>((image.u - u_min_) * inverse_cell_);
+    const int row = static_cast<int>((image.v - v_min_) * inverse_cell_);
+    float& nearest = nearest_[static_cast<std::size_t>(row * columns_ + column)];
+    nearest = std::min(nearest, image.range);
+  });
+}
+
+RangeImage::Evidence RangeImage::evidence(const cloud::Point& point, float tolerance) const {
+  const auto image = projection_(point);
+  const float column = (image.u - u_min_) * inverse_cell_;
+  const float row = (image.v - v_min_) * inverse_cell_;
+  if (!(column >= 0.0f && row >= 0.0f && column < static_cast<float>(columns_) && row < static_cast<float>(rows_)))
+    return Evidence::empty;
+  const float nearest = nearest_[static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column))];
+  if (nearest < image.range - tolerance) return Evidence::hidden;
+  return nearest > image.range + tolerance ? Evidence::empty : Evidence::surface;
+}
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,108 @@
+#include "modeling/input/view_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+#include "modeling/median.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// No grid takes more memory than this many cells need, however far apart its points lie.
+constexpr double kMostCells = 1 << 24;
+
+struct Extent {
+  float u_min = std::numeric_limits<float>::infinity(), v_min = u_min;
+  float u_max = -u_min, v_max = -u_min;
+
+  explicit Extent(const ViewProjection::Images& images) {
+    for (const float u : images.u) u_min = std::min(u_min, u), u_max = std::max(u_max, u);
+    for (const float v : images.v) v_min = std::min(v_min, v), v_max = std::max(v_max, v);
+  }
+  double area() const { return double(u_max - u_min) * double(v_max - v_min); }
+};
+
+/// How many cells of this size hold a point.
+std::size_t count_occupied(const ViewProjection::Images& images, const Extent& extent, float cell) {
+  const auto columns = static_cast<std::size_t>((extent.u_max - extent.u_min) / cell) + 1;
+  const auto rows = static_cast<std::size_t>((extent.v_max - extent.v_min) / cell) + 1;
+  std::vector<bool> is_occupied(columns * rows, false);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const auto column = std::min(static_cast<std::size_t>((images.u[i] - extent.u_min) / cell), columns - 1);
+    const auto row = std::min(static_cast<std::size_t>((images.v[i] - extent.v_min) / cell), rows - 1);
+    auto occupied = is_occupied[row * columns + column];
+    if (!occupied) occupied = true, ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+ViewGrid::ViewGrid(ViewProjection::Images images, std::span<const cloud::Point> points, float cell)
+    : images_(std::move(images)) {
+  if (points.empty()) {
+    starts_.assign(2, 0);
+    return;
+  }
+  const Extent extent(images_);
+  cell = std::max(cell, static_cast<float>(std::sqrt(extent.area() / kMostCells)));
+  columns_ = static_cast<std::uint32_t>((extent.u_max - extent.u_min) / cell) + 1;
+  rows_ = static_cast<std::uint32_t>((extent.v_max - extent.v_min) / cell) + 1;
+
+  starts_.assign(std::size_t{columns_} * rows_ + 1, 0);
+  cells_.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto column = static_cast<std::uint32_t>((images_.u[i] - extent.u_min) / cell);
+    const auto row = static_cast<std::uint32_t>((images_.v[i] - extent.v_min) / cell);
+    cells_.push_back(std::min(row, rows_ - 1) * columns_ + std::min(column, columns_ - 1));
+    ++starts_[cells_.back() + 1];
+  }
+  std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+
+  order_.resize(points.size());
+  std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
+  for (std::uint32_t i = 0; i < points.size(); ++i) order_[next[cells_[i]]++] = i;
+  for (std::size_t c = 0; c + 1 < starts_.size(); ++c)
+    if (starts_[c + 1] - starts_[c] > 1)
+      std::sort(order_.begin() + starts_[c], order_.begin() + starts_[c + 1], [&](std::uint32_t a, std::uint32_t b) {
+        const cloud::Point& p = points[a];
+        const cloud::Point& q = points[b];
+        return std::tuple(p.x(), p.y(), p.z(), a) < std::tuple(q.x(), q.y(), q.z(), b);
+      });
+}
+
+std::pair<std::uint32_t, std::uint32_t> ViewGrid::range(int row, int first_column, int last_column) const {
+  if (row < 0 || row >= static_cast<int>(rows_)) return {0, 0};
+  first_column = std::max(first_column, 0);
+  last_column = std::min(last_column, static_cast<int>(columns_) - 1);
+  if (first_column > last_column) return {0, 0};
+  const std::size_t base = static_cast<std::size_t>(row) * columns_;
+  return {starts_[base + static_cast<std::size_t>(first_column)],
+          starts_[base + static_cast<std::size_t>(last_column) + 1]};
+}
+
+double estimate_spacing(const ViewProjection::Images& images) {
+  if (images.size() == 0) return 0.0;
+  const Extent extent(images);
+  std::vector<float> ranges = images.range;
+  const double range = median(ranges);
+
+  // With about four points a cell few cells of a surface are empty by chance (e^-4 = 2 %), and the cells that a
+  // surface covers only partly are still a small part of all.
+  constexpr double kPointsPerCell = 4.0;
+  const auto count = static_cast<double>(images.size());
+  double cell = std::sqrt(std::max(extent.area(), 1e-12) * kPointsPerCell / count);
+  double area = extent.area();
+  for (int round = 0; round < 3; ++round) {
+    cell = std::max(cell, std::sqrt(extent.area() / kMostCells));
+    area = static_cast<double>(count_occupied(images, extent, static_cast<float>(cell))) * cell * cell;
+    cell = std::sqrt(area * kPointsPerCell / count);
+  }
+  return range * std::sqrt(area / count);
+}
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,238 @@
+#include "modeling/joining/branch_joining.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <unordered_map>
+
+#include "modeling/fitting/vote_voxels.hpp"
+#include "modeling/joining/branch_links.hpp"
+#include "modeling/joining/path_cover.hpp"
+#include "tubebin/core/random.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// A link is ruled out where the scan is e^9 times likelier without it.
+constexpr double kLinkCostLimit = 9.0;
+/// A tube shorter than it should be can have other reasons than a missed link: e^-10.
+constexpr double kLengthCostLimit = 10.0;
+constexpr std::size_t kTreesPerPath = 300;
+constexpr std::size_t kSearchNodeLimit = 2000;
+
+/// A tube under construction: paths that links hold together.
+struct Tree {
+  std::vector<std::uint32_t> paths = {};
+  std::vector<std::uint32_t> links = {};
+  std::vector<std::uint32_t> used_ends = {};
+  std::uint64_t key = 0;  ///< the paths' keys, xor: the same for the same paths in any order (Zobrist 1970)
+  double link_cost = 0.0;
+  double cost = 0.0;    ///< with what its length says
+  double length = 0.0;  ///< of paths and links, metres
+
+  bool holds(std::uint32_t path) const { return std::find(paths.begin(), paths.end(), path) != paths.end(); }
+  bool uses(std::uint32_t end) const { return std::find(used_ends.begin(), used_ends.end(), end) != used_ends.end(); }
+};
+
+class TreeJoiner {
+ public:
+  TreeJoiner(const std::vector<TubePath>& paths, double radius, const OcclusionTest& occlusion) : radius_(radius) {
+    std::vector<TubePiece> pieces;
+    for (const TubePath& path : paths) pieces.push_back({.nodes = path.nodes, .radius = radius, .points = {}});
+    ends_ = find_piece_ends(pieces, occlusion, 40.0 * radius);
+    links_ = find_branch_links(pieces, ends_, occlusion, kLinkCostLimit);
+    links_of_path_.resize(paths.size());
+    for (std::uint32_t l = 0; l < links_.size(); ++l)
+      for (const std::uint32_t path : {links_[l].end / 2, links_[l].other}) links_of_path_[path].push_back(l);
+    for (std::uint32_t p = 0; p < paths.size(); ++p) {
+      keys_.push_back(derive_seed({p}));
+      singles_.push_back({.paths = {p}, .key = keys_[p], .length = pieces[p].length()});
+    }
+  }
+
+  /// Every link that is likelier than not, cheapest first, unless its paths hang together already: a spanning forest
+  /// of least cost (Kruskal 1956).
+  std::vector<Tree> likely_trees(double cost_limit) const {
+    std::vector<Tree> trees = singles_;
+    for (std::uint32_t l = 0; l < links_.size() && links_[l].cost < cost_limit; ++l) {
+      const auto holds = [](std::uint32_t path) { return [path](const Tree& tree) { return tree.holds(path); }; };
+      const auto a = std::find_if(trees.begin(), trees.end(), holds(links_[l].end / 2));
+      const auto b = std::find_if(trees.begin(), trees.end(), holds(links_[l].other));
+      if (a == b || a->uses(links_[l].end) || (links_[l].other_end && b->uses(*links_[l].other_end))) continue;
+      add_link(*a, l);
+      a->paths.insert(a->paths.end(), b->paths.begin(), b->paths.end());
+      a->links.insert(a->links.end(), b->links.begin(), b->links.end());
+      a->used_ends.insert(a->used_ends.end(), b->used_ends.begin(), b->used_ends.end());
+      a->length += b->length;
+      trees.erase(b);
+    }
+    return trees;
+  }
+
+  /// Lengths that the tubes may have in common: those of trees that fairly sure links make, longest first. The surest
+  /// may leave trees apart, and those that are just likelier than not join too many.
+  std::vector<double> possible_lengths() const {
+    std::vector<double> lengths;
+    for (const double cost_limit : {kOnSideCost / 2.0, kOnSideCost / 4.0})
+      for (const Tree& tree : likely_trees(cost_limit))
+        if (tree.paths.size() > 1) lengths.push_back(tree.length);
+    std::sort(lengths.begin(), lengths.end(), std::greater<>());
+    std::vector<double> distinct;
+    for (const double length : lengths)
+      if (distinct.empty() || distinct.back() - length > length_sigma(1)) distinct.push_back(length);
+    return distinct;
+  }
+
+  /// What speaks against a common length with these trees, nats; infinite unless at least half of all tube is in trees
+  /// of that length. One that all lengths up to it are as likely for has it but once in length / (sqrt(2 pi) sigma).
+  double cost_of_length(const std::vector<Tree>& trees, double tube_length) const {
+    double cost = 0.0, all = 0.0, as_long = 0.0;
+    for (const Tree& tree : trees) {
+      const double sigma = length_sigma(tree.paths.size());
+      all += tree.length;
+      cost += tree.cost;
+      if (std::abs(tree.length - tube_length) > 2.0 * sigma) continue;
+      as_long += tree.length;
+      cost -= std::log(tube_length / (std::sqrt(2.0 * std::numbers::pi) * sigma));
+    }
+    return as_long >= all / 2.0 ? cost : std::numeric_limits<double>::infinity();
+  }
+
+  /// The cheapest set of trees that holds each path once.
+  std::vector<Tree> cheapest_trees(double tube_length) {
+    tube_length_ = tube_length;
+    trees_.clear();
+    tree_of_key_.clear();
+    for (const Tree& tree : singles_) {
+      budget_ = kTreesPerPath;
+      grow(tree);
+    }
+    std::vector<PathCandidate> candidates;
+    for (const Tree& tree : trees_) {
+      PathCandidate& candidate = candidates.emplace_back();
+      candidate.items.assign(tree.paths.begin(), tree.paths.end());
+      candidate.cost = tree.cost;
+    }
+    std::vector<Tree> chosen;
+    for (const std::uint32_t c : cheapest_path_cover(singles_.size(), candidates, {}, kSearchNodeLimit))
+      chosen.push_back(trees_[c]);
+    return chosen;
+  }
+
+  TubeModel tube_of(const Tree& tree, const std::vector<TubePath>& paths) const {
+    TubeModel tube{.paths = {}, .radius = radius_};
+    for (const std::uint32_t p : tree.paths) {
+      tube.paths.push_back(paths[p]);
+      for (const std::uint32_t l : tree.links)
+        if (links_[l].end / 2 == p) lead_up(tube.paths.back(), links_[l]);
+    }
+    std::sort(tube.paths.begin(), tube.paths.end(),
+              [](const TubePath& a, const TubePath& b) { return polyline_length(a.nodes) > polyline_length(b.nodes); });
+    return tube;
+  }
+
+ private:
+  static void lead_up(TubePath& path, const BranchLink& link) {
+    const bool last = link.end % 2 == 1;
+    path.nodes.insert(last ? path.nodes.end() : path.nodes.begin(), link.place);
+    path.bridged.insert(last ? path.bridged.end() : path.bridged.begin(), true);
+  }
+
+  void add_link(Tree& tree, std::uint32_t l) const {
+    tree.links.push_back(l);
+    tree.used_ends.push_back(links_[l].end);
+    if (links_[l].other_end) tree.used_ends.push_back(*links_[l].other_end);
+    tree.link_cost += links_[l].cost;
+    tree.length += links_[l].length;
+  }
+
+  /// Whether every end that leads to no path is in sight.
+  bool is_seen(const Tree& tree) const {
+    return std::all_of(tree.paths.begin(), tree.paths.end(), [&](std::uint32_t p) {
+      return (tree.uses(2 * p) || ends_[2 * p].seen_free > 0.5) &&
+             (tree.uses(2 * p + 1) || ends_[2 * p + 1].seen_free > 0.5);
+    });
+  }
+
+  /// Each path's length is off by about a radius, where it is led up to another and where it bends out of sight.
+  double length_sigma(std::size_t paths) const { return radius_ * std::sqrt(static_cast<double>(paths)); }
+
+  double length_cost(const Tree& tree) const {
+    const double missing = tube_length_ - tree.length, sigma = length_sigma(tree.paths.size());
+    if (missing < 0.0) return 0.5 * missing * missing / (sigma * sigma);
+    double room = 0.0;
+    for (const std::uint32_t p : tree.paths)
+      for (const std::uint32_t end : {2 * p, 2 * p + 1})
+        if (!tree.uses(end) && ends_[end].seen_free < 0.5) room += ends_[end].hidden_reach + radius_;
+    const double unexplained = std::max(missing - room, 0.0);
+    return std::min(0.5 * unexplained * unexplained / (sigma * sigma), kLengthCostLimit);
+  }
+
+  void grow(const Tree& tree) {
+    if (budget_ == 0 || tree.length > tube_length_ + 4.0 * length_sigma(tree.paths.size())) return;
+    --budget_;
+    const auto [entry, added] = tree_of_key_.try_emplace(tree.key, trees_.size());
+    const double cost = tree.link_cost + length_cost(tree);
+    if (!added && trees_[entry->second].cost <= cost) return;
+    if (added) trees_.push_back(tree);
+    else trees_[entry->second] = tree;
+    trees_[entry->second].cost = cost;
+    for (const std::uint32_t path : tree.paths)
+      for (const std::uint32_t l : links_of_path_[path]) {
+        const BranchLink& link = links_[l];
+        const std::uint32_t next = link.end / 2 == path ? link.other : link.end / 2;
+        if (tree.holds(next) || tree.uses(link.end) || (link.other_end && tree.uses(*link.other_end))) continue;
+        Tree grown = tree;
+        add_link(grown, l);
+        grown.paths.push_back(next);
+        grown.key ^= keys_[next];
+        grown.length += singles_[next].length;
+        grow(grown);
+      }
+  }
+
+  double radius_;
+  double tube_length_ = 0.0;
+  std::vector<PieceEnd> ends_;
+  std::vector<BranchLink> links_;  ///< cheapest first
+  std::vector<std::vector<std::uint32_t>> links_of_path_;
+  std::vector<std::uint64_t> keys_;
+  std::vector<Tree> singles_;  ///< each path alone
+  std::vector<Tree> trees_;
+  std::unordered_map<std::uint64_t, std::size_t> tree_of_key_;
+  std::size_t budget_ = 0;
+};
+
+}  // namespace
+
+std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double radius, const OcclusionTest& occlusion,
+                                     double tube_length) {
+  if (paths.empty()) return {};
+  TreeJoiner joiner(paths, radius, occlusion);
+  std::vector<Tree> trees;
+  if (tube_length > 0.0) {
+    trees = joiner.cheapest_trees(tube_length);
+  } else {
+    trees = joiner.likely_trees(0.0);
+    double least = std::numeric_limits<double>::infinity();
+    for (const double length : joiner.possible_lengths()) {
+      std::vector<Tree> of_length = joiner.cheapest_trees(length);
+      const double cost = joiner.cost_of_length(of_length, length);
+      if (cost >= least) continue;
+      least = cost;
+      trees = std::move(of_length);
+    }
+  }
+  std::vector<TubeModel> tubes;
+  for (const Tree& tree : trees) tubes.push_back(joiner.tube_of(tree, paths));
+  return tubes;
+}
+
+std::vector<TubeModel> unbranched(std::vector<TubePath> paths, double radius) {
+  std::vector<TubeModel> tubes;
+  for (TubePath& path : paths) tubes.push_back({.paths = {std::move(path)}, .radius = radius});
+  return tubes;
+}
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,20 @@
+/// Where tubes branch: paths that hang together are one tube.
+#pragma once
+
+#include <vector>
+
+#include "modeling/joining/occlusion.hpp"
+#include "tubebin/modeling/tube_model.hpp"
+
+namespace tubebin::modeling {
+
+/// The tubes, as sets of paths, that explain the scan best: links (branch_links.hpp) by their likelihood, and the length
+/// of all paths together as common to the scene's tubes as `tube_length` says (metres; 0: what those in sight agree on,
+/// if they do). Each branch is led up to the centreline that it branches off.
+std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double radius, const OcclusionTest& occlusion,
+                                     double tube_length);
+
+/// One tube for each path.
+std::vector<TubeModel> unbranched(std::vector<TubePath> paths, double radius);
+
+}  // namespace tubebin::modeling

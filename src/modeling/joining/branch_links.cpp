@@ -1,0 +1,147 @@
+#include "modeling/joining/branch_links.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tubebin::modeling {
+namespace {
+
+/// -log of how many of the other ends out of sight lead to another path of their tube, to how many do not: one to two.
+constexpr double kHiddenLinkCost = 0.7;
+/// -log of how seldom (1 in 100) a place that a tube takes up is measured as empty.
+constexpr double kEmptyLinkCost = 4.6;
+/// In radii: what is farther ahead is met by chance as likely as by a branch.
+constexpr double kReach = 12.0;
+
+/// The first place of the polyline that the way straight on from the tip comes nearer to than half a radius, within
+/// `reach`.
+std::optional<Vec3> place_ahead(const Vec3& tip, const Vec3& outward, const std::vector<Vec3>& nodes, double radius,
+                                double reach) {
+  for (double ahead = 0.0; ahead <= reach; ahead += radius / 8.0) {
+    const Vec3 place = nearest_on_polyline(tip + ahead * outward, nodes);
+    if ((tip + ahead * outward - place).norm() <= radius / 2.0) return place;
+  }
+  return std::nullopt;
+}
+
+/// Straight from the tip to the place, sampled as OcclusionTest wants it.
+std::vector<Vec3> line_between(const Vec3& tip, const Vec3& place, double radius) {
+  const int steps = std::max(2, static_cast<int>((place - tip).norm() / (radius / 2.0)));
+  std::vector<Vec3> line;
+  for (int i = 0; i <= steps; ++i) line.push_back(tip + double(i) / steps * (place - tip));
+  return line;
+}
+
+/// What the scene's paths are like.
+struct Surroundings {
+  double radius, bending_rate;
+  double line_density;  ///< length of centreline a volume, 1 / m^2
+};
+
+Surroundings surroundings_of(const std::vector<TubePiece>& paths) {
+  Eigen::AlignedBox3d box;
+  double length = 0.0;
+  for (const TubePiece& path : paths) {
+    length += path.length();
+    for (const Vec3& node : path.nodes) box.extend(node);
+  }
+  const double radius = paths.front().radius;
+  return {.radius = radius,
+          .bending_rate = estimate_bending_rate(paths, radius),
+          .line_density = length / (box.sizes().array() + 2.0 * radius).prod()};
+}
+
+/// -log of the likelihood ratio of "the end leads to the other path's place" to "that path passes there by chance".
+/// As in join_candidates.cpp, a direction that walks at random with variance q a metre is off by q D^3 / 3 an axis after
+/// a length D. Of the two axes only the one across both counts, since the branch may start anywhere along the other
+/// path. Tails are Student's t with 3 degrees of freedom (in 1 dimension, log norm log(2 / (pi sqrt(3)))). Lines of
+/// density L a volume pass a ray within w on either side pi / 2 L w times a metre.
+double side_cost(const PieceEnd& end, const Vec3& place, const Surroundings& around) {
+  const Vec3 chord = place - end.position;
+  const double length = std::max(chord.norm(), around.radius);
+  const double ahead = chord.dot(end.outward);
+  const double off = ahead > 0.0 ? (chord - ahead * end.outward).norm() : chord.norm();
+  const double fit = around.radius / 4.0;
+  const double variance =
+      around.bending_rate * std::pow(length, 3) / 3.0 + end.direction_variance * length * length + fit * fit;
+  const double log_norm = std::log(2.0 / (std::numbers::pi * std::sqrt(3.0)));
+  const double branch = 2.0 * std::log1p(off * off / (3.0 * variance)) - log_norm + 0.5 * std::log(variance);
+  const double unseen = std::log(4.0 * around.radius) + length / (4.0 * around.radius);
+  const double chance = -std::log(std::numbers::pi / 2.0 * around.line_density);
+  return branch + unseen - chance;
+}
+
+/// The likeliest place of the other path, as far as its shape says.
+std::optional<BranchLink> likeliest_side(const PieceEnd& end, const TubePiece& other, const Surroundings& around) {
+  std::optional<BranchLink> best;
+  for (std::size_t k = 0; k + 1 < other.nodes.size(); ++k) {
+    const Vec3 along = other.nodes[k + 1] - other.nodes[k];
+    const int steps = static_cast<int>(along.norm() / (around.radius / 2.0)) + 1;
+    for (int i = 0; i <= steps; ++i) {
+      const Vec3 place = other.nodes[k] + double(i) / steps * along;
+      const double length = (place - end.position).norm();
+      if (length > kReach * around.radius) continue;
+      const double cost = side_cost(end, place, around);
+      if (!best || cost < best->cost) best = {.place = place, .length = length, .cost = cost};
+    }
+  }
+  return best;
+}
+
+std::optional<BranchLink> side_link(const PieceEnd& end, const TubePiece& other, const OcclusionTest& occlusion,
+                                    const Surroundings& around, double cost_limit) {
+  if (const auto place = place_on_side(end.position, end.outward, other.nodes, around.radius))
+    return BranchLink{.place = *place, .length = (*place - end.position).norm(), .cost = kOnSideCost};
+  auto link = likeliest_side(end, other, around);
+  if (!link) return std::nullopt;
+  link->cost += kHiddenLinkCost + kEmptyLinkCost * end.seen_free;
+  if (link->cost >= cost_limit) return std::nullopt;
+  const double samples = std::max(link->length / (2.0 * around.radius), 1.0);
+  link->cost +=
+      kEmptyLinkCost * samples * occlusion.empty_part(line_between(end.position, link->place, around.radius), 1.0);
+  return link->cost < cost_limit ? link : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const std::vector<Vec3>& nodes, double radius) {
+  // Closer than nine tenths of a radius, to leave room for what fits are off.
+  if (distance_to_polyline(tip, nodes) > 0.9 * radius) return std::nullopt;
+  const std::optional<Vec3> place = place_ahead(tip, outward, nodes, radius, 1.5 * radius);
+  const bool is_at_end =
+      place && ((*place - nodes.front()).norm() <= radius || (*place - nodes.back()).norm() <= radius);
+  return is_at_end ? std::nullopt : place;
+}
+
+std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, const std::vector<PieceEnd>& ends,
+                                          const OcclusionTest& occlusion, double cost_limit) {
+  constexpr std::size_t kJoinsPerEnd = 4;
+  std::vector<BranchLink> links;
+  if (paths.empty()) return links;
+  const Surroundings around = surroundings_of(paths);
+  for (std::uint32_t end = 0; end < ends.size(); ++end)
+    for (std::uint32_t other = 0; other < paths.size(); ++other) {
+      if (other == end / 2) continue;
+      auto link = side_link(ends[end], paths[other], occlusion, around, cost_limit);
+      if (!link) continue;
+      link->end = end;
+      link->other = other;
+      links.push_back(*link);
+    }
+  const JoinLimits limits{
+      .cost = cost_limit, .length = std::numeric_limits<double>::infinity(), .joins_per_end = kJoinsPerEnd};
+  for (const JoinCandidate& join :
+       find_join_candidates(paths, ends, find_possible_joins(paths, ends, occlusion, around.bending_rate, limits.cost),
+                            occlusion, around.bending_rate, limits))
+    links.push_back({.end = join.end_a,
+                     .other = join.end_b / 2,
+                     .other_end = join.end_b,
+                     .place = ends[join.end_b].position,
+                     .length = polyline_length(join.bridge),
+                     .cost = join.cost});
+  std::sort(links.begin(), links.end(), [](const BranchLink& a, const BranchLink& b) { return a.cost < b.cost; });
+  return links;
+}
+
+}  // namespace tubebin::modeling

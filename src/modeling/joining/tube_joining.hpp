@@ -1,0 +1,22 @@
+/// Joining of `--method centerline` (step 4 of the pipeline): pieces become tubes, all at once.
+#pragma once
+
+#include <vector>
+
+#include "modeling/joining/join_candidates.hpp"
+
+namespace tubebin::modeling {
+
+struct Joining {
+  std::vector<TubePath> paths;
+  double tube_length = 0.0;   ///< metres: as given, or the common length of the scene's tubes; 0 where there is none
+  bool tubes_branch = false;  ///< enough pieces start on another's side; join_branches then makes tubes of the paths
+};
+
+/// Chooses the chains of pieces that explain the scan best: each piece in one tube, joins by their likelihood, tubes of
+/// `tube_length` metres (0: the length that tubes with both ends in sight agree on, if they do) whose missing part
+/// must find room where the scanner could not see. An end on another piece's side (branch_joining.hpp) is no end that a
+/// chain could go on from.
+Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length);
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,77 @@
+#include "tubebin/results/labelled_points.hpp"
+
+#include "core/json_reader.hpp"
+#include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/evaluation/cloud_pair.hpp"
+#include "tubebin/results/model_cloud.hpp"
+
+namespace tubebin::results {
+namespace {
+
+/// The options that model.json says the run had.
+ModelConfig read_run_config(const std::string& path) {
+  const nlohmann::json json = parse_json(read_file(path), path);
+  ModelConfig config;
+  JsonPlace(json, path).at("options").fields([&](Fields& fields) { describe(fields, config); });
+  return config;
+}
+
+/// From the clouds that the run kept. Points of the bin without a label are left out.
+std::optional<evaluation::LabelledPoints> kept_points(const evaluation::RunScore& run) {
+  if (run.dataset.empty() || run.filtered.empty() || run.labeled.empty()) return std::nullopt;
+  const scene::DatasetFiles dataset(run.dataset);
+  const std::string cloud = dataset.cloud_of(run.key.scene);
+  cloud::Cloud filtered = !cloud.empty() && run.filtered == dataset.place(run.key.scene, cloud)
+                              ? cloud::parse_cloud(dataset.read(run.key.scene, cloud), run.filtered)
+                              : cloud::read_cloud(run.filtered);
+  if (filtered.labels.empty()) return std::nullopt;
+  filtered.colors.clear();
+  const cloud::Cloud labeled = cloud::read_cloud(run.labeled);
+  const evaluation::PairedIds pairs = evaluation::pair_clouds({filtered, run.filtered}, {labeled, run.labeled});
+  evaluation::LabelledPoints result;
+  result.scanner =
+      scene::parse_scene_json(dataset.read(run.key.scene, "scene.json"), dataset.place(run.key.scene, "scene.json"))
+          .scene.scanner;
+  result.ratio = run.key.ratio;
+  for (std::size_t i = 0; i < pairs.points.size(); ++i) {
+    if (pairs.truth[i] == 0 && pairs.predicted[i] == evaluation::kNullId) continue;
+    result.points.push_back(filtered.points[pairs.points[i]]);
+    result.truth.push_back(pairs.truth[i]);
+    result.predicted.push_back(pairs.predicted[i]);
+  }
+  return result;
+}
+
+double micro_recall(const evaluation::LabelledPoints& points) {
+  return evaluation::match_segments(evaluation::count_pairs(points.truth, points.predicted, 0)).micro_recall();
+}
+
+std::optional<evaluation::LabelledPoints> model_again(const evaluation::RunScore& run) {
+  if (run.folder.empty()) return std::nullopt;
+  const scene::DatasetFiles files(run.dataset);
+  const CloudFile cloud{run.key.scene, files.cloud_of(run.key.scene)};
+  if (cloud.file.empty()) return std::nullopt;
+  const CloudToModel input = read_cloud_to_model(files, cloud);
+  if (input.cloud.labels.empty() || !input.scene) return std::nullopt;
+  const modeling::ModelingResult result = model_cloud(input, read_run_config(run.folder + "/model.json"));
+  evaluation::LabelledPoints points;
+  points.scanner = input.scene->scene.scanner;
+  points.ratio = run.key.ratio;
+  points.predicted = result.labels;
+  for (const std::uint32_t source : result.source) {
+    points.points.push_back(input.cloud.points[source]);
+    points.truth.push_back(input.cloud.labels[source]);
+  }
+  if (micro_recall(points) != run.micro_recall) return std::nullopt;
+  return points;
+}
+
+}  // namespace
+
+std::optional<evaluation::LabelledPoints> labelled_points(const evaluation::RunScore& run) {
+  if (auto kept = kept_points(run)) return kept;
+  return run.dataset.empty() ? std::nullopt : model_again(run);
+}
+
+}  // namespace tubebin::results

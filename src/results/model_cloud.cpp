@@ -1,0 +1,125 @@
+#include "tubebin/results/model_cloud.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <numeric>
+
+#include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/cloud/label_colors.hpp"
+
+namespace tubebin::results {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<scene::Bin> choose_bin(const CloudToModel& input, const ModelConfig& config) {
+  if (config.bin_source == BinSource::config) return config.bin;
+  if (config.bin_source == BinSource::automatic && input.scene) return input.scene->scene.bin;
+  return std::nullopt;
+}
+
+Pose choose_sensor(const CloudToModel& input, const ModelConfig& config) {
+  Pose pose = input.cloud.world_from_sensor;
+  if (!config.viewpoint.isZero()) pose.translation() = config.viewpoint;
+  return pose;
+}
+
+/// Places in `result` in the order of the input's points.
+std::vector<std::size_t> input_order(const modeling::ModelingResult& result) {
+  std::vector<std::size_t> order(result.source.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return result.source[a] < result.source[b]; });
+  return order;
+}
+
+cloud::Cloud unorganized(const cloud::Cloud& input, std::size_t size) {
+  cloud::Cloud cloud;
+  cloud.width = static_cast<std::uint32_t>(size);
+  cloud.world_from_sensor = input.world_from_sensor;
+  cloud.points.reserve(size);
+  return cloud;
+}
+
+}  // namespace
+
+void describe(Fields& fields, ModelConfig& config) {
+  describe(fields, config.modeling);
+  fields.choice("bin_source", config.bin_source, {"automatic", "config", "cloud"},
+                "which bin is cropped: scene.json's beside the cloud (else floor and walls are found), the one below, "
+                "or floor and walls found in the cloud");
+  fields.group("bin", "used with bin_source: config", [&](Fields& inner) { describe(inner, config.bin); });
+  fields.vector("viewpoint", config.viewpoint, {-1000.0, 1000.0}, "m",
+                "where the scanner stood; zeros: as the cloud's file says");
+}
+
+ModelConfig load_model_config(const std::string& path) {
+  ModelConfig config;
+  read_yaml_file(path, [&](Fields& fields) { describe(fields, config); });
+  return config;
+}
+
+CloudToModel read_cloud_to_model(const std::string& path, double scale) {
+  const auto start = std::chrono::steady_clock::now();
+  CloudToModel input{.path = path, .cloud = cloud::read_cloud(path, scale), .scene = std::nullopt};
+  if (const fs::path scene = fs::path(path).parent_path() / "scene.json"; fs::exists(scene))
+    input.scene = scene::read_scene_json(scene.string());
+  input.read_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return input;
+}
+
+CloudToModel read_cloud_to_model(const scene::DatasetFiles& files, const CloudFile& cloud) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string path = files.place(cloud.scene, cloud.file);
+  CloudToModel input{.path = path, .cloud = cloud::parse_cloud(files.read(cloud.scene, cloud.file), path), .scene = {}};
+  if (files.has(cloud.scene, "scene.json"))
+    input.scene =
+        scene::parse_scene_json(files.read(cloud.scene, "scene.json"), files.place(cloud.scene, "scene.json"));
+  input.read_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return input;
+}
+
+modeling::ModelingResult model_cloud(const CloudToModel& input, const ModelConfig& config) {
+  if (std::none_of(input.cloud.points.begin(), input.cloud.points.end(), cloud::is_finite))
+    throw_io_error("{}: has no finite point", input.path);
+  const modeling::ModelingInput positions{.points = input.cloud.points,
+                                          .world_from_sensor = choose_sensor(input, config),
+                                          .bin = choose_bin(input, config)};
+  try {
+    return modeling::model_tubes(positions, config.modeling);
+  } catch (const IoError& error) {
+    throw IoError(input.path + ": " + error.what());
+  }
+}
+
+cloud::Cloud filtered_cloud(const cloud::Cloud& input, const modeling::ModelingResult& result) {
+  cloud::Cloud cloud = unorganized(input, result.source.size());
+  for (const std::size_t k : input_order(result)) {
+    const std::uint32_t i = result.source[k];
+    cloud.points.push_back(input.points[i]);
+    if (!input.colors.empty()) cloud.colors.push_back(input.colors[i]);
+    if (!input.labels.empty()) cloud.labels.push_back(input.labels[i]);
+    if (!input.sources.empty()) cloud.sources.push_back(input.sources[i]);
+  }
+  return cloud;
+}
+
+std::vector<cloud::Color> model_colors(const modeling::ModelingResult& result) {
+  std::vector<cloud::Color> colors = cloud::label_colors(result.tubes.size());
+  colors[0] = cloud::kNullColor;
+  return colors;
+}
+
+cloud::Cloud labeled_cloud(const cloud::Cloud& input, const modeling::ModelingResult& result) {
+  cloud::Cloud cloud = unorganized(input, result.source.size());
+  const std::vector<cloud::Color> colors = model_colors(result);
+  for (const std::size_t k : input_order(result)) {
+    cloud.points.push_back(input.points[result.source[k]]);
+    cloud.colors.push_back(colors[result.labels[k]]);
+    cloud.labels.push_back(result.labels[k]);
+  }
+  return cloud;
+}
+
+}  // namespace tubebin::results

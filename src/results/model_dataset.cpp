@@ -1,0 +1,285 @@
+#include "tubebin/results/model_dataset.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+
+#include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/version.hpp"
+#include "tubebin/dataset/dataset_config.hpp"
+#include "tubebin/evaluation/run_score.hpp"
+#include "tubebin/jobs/atomic_folder.hpp"
+#include "tubebin/jobs/folder_lock.hpp"
+#include "tubebin/jobs/worker_pool.hpp"
+#include "tubebin/modeling/model_json.hpp"
+#include "tubebin/results/cloud_files.hpp"
+#include "tubebin/results/modeling_run.hpp"
+
+namespace tubebin::results {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// The data set's clouds, of each set and number of tubes the first ones alone where options say so.
+std::vector<CloudFile> choose_clouds(const scene::DatasetFiles& files, const BatchOptions& options) {
+  std::vector<CloudFile> clouds = find_clouds(files);
+  if (!options.scenes.empty()) {
+    const std::set<std::string> wanted(options.scenes.begin(), options.scenes.end());
+    std::erase_if(clouds, [&](const CloudFile& cloud) { return !wanted.contains(cloud.scene); });
+  }
+  if (options.cases > 0) {
+    std::map<std::string, int> taken;
+    std::erase_if(clouds, [&](const CloudFile& cloud) {
+      return ++taken[cloud.scene.substr(0, cloud.scene.find('/'))] > options.cases;
+    });
+  }
+  return clouds;
+}
+
+void add_contingency(Json& json, const CloudToModel& input, const modeling::ModelingResult& result) {
+  const std::vector<cloud::Label> truth = truth_labels(input);
+  if (truth.empty()) return;
+  std::map<std::pair<cloud::Label, cloud::Label>, std::size_t> counts;
+  std::map<cloud::Label, std::size_t> truth_points;
+  if (input.scene)
+    for (cloud::Label k = 0; k <= input.scene->scene.tubes.size(); ++k) truth_points[k] = 0;
+  for (std::size_t k = 0; k < result.source.size(); ++k) {
+    const cloud::Label label = truth[result.source[k]];
+    ++counts[{label, result.labels[k]}];
+    ++truth_points[label];
+  }
+  json["truth_labels"] = Json::array();
+  json["truth_points"] = Json::array();
+  for (const auto& [label, points] : truth_points) {
+    json["truth_labels"].push_back(label);
+    json["truth_points"].push_back(points);
+  }
+  json["contingency"] = Json::array();
+  for (const auto& [pair, points] : counts) json["contingency"].push_back({pair.first, pair.second, points});
+}
+
+std::string format_result(const ModelingRun& run, const CloudToModel& input, const modeling::ModelingResult& result,
+                          std::uint64_t seed) {
+  const evaluation::RunKey name = evaluation::parse_scene_name(run.scene);
+  const std::size_t tubes = input.scene ? input.scene->scene.tubes.size() : static_cast<std::size_t>(name.tubes);
+  const auto unlabeled = std::count(result.labels.begin(), result.labels.end(), cloud::Label{0});
+  Json json = {{"format", "tubebin result 1"},
+               {"scene", run.scene},
+               {"set", name.set},
+               {"tubes", tubes},
+               {"case", name.case_number},
+               {"method", name_of(run.method)},
+               {"ratio", run.ratio},
+               {"seed", seed},
+               {"cloud_points", std::count_if(input.cloud.points.begin(), input.cloud.points.end(), cloud::is_finite)},
+               {"filtered_points", result.labels.size()},
+               {"labeled_points", result.labels.size() - static_cast<std::size_t>(unlabeled)},
+               {"model_tubes", result.tubes.size()}};
+  add_contingency(json, input, result);
+  return json.dump() + "\n";
+}
+
+/// In a worker process.
+jobs::AttemptResult do_run(const ModelingRun& run, const scene::DatasetFiles& dataset, const BatchOptions& options,
+                           const ModelConfig& config) {
+  CloudToModel input;
+  modeling::ModelingResult result;
+  ModelConfig own = run_config(config, run);
+  try {
+    input = read_cloud_to_model(dataset, {run.scene, run.cloud});
+    result = model_cloud(input, own);
+  } catch (const IoError& error) {
+    return jobs::failed_attempt("unreadable", error.what());  // this cloud's fault: the others go on
+  }
+  std::map<std::string, std::string> files;
+  files["model.json"] = modeling::format_model_json(
+      result, model_colors(result), [&](Fields& fields) { describe(fields, own); }, false);
+  files["times.json"] = modeling::format_times_json(result.seconds, input.read_seconds);
+  files["result.json"] = format_result(run, input, result, own.modeling.seed);
+  if (options.keep_clouds) {
+    files["filtered.pcd"] =
+        cloud::format_cloud(filtered_cloud(input.cloud, result), cloud::CloudFormat::pcd_compressed);
+    files["labeled.pcd"] = cloud::format_cloud(labeled_cloud(input.cloud, result), cloud::CloudFormat::pcd_compressed);
+  }
+  return jobs::successful_attempt([finish = jobs::begin_whole_folder(options.results + "/" + run.folder(), files)] {
+    finish();
+    return std::string();
+  });
+}
+
+std::string format_index(const BatchOptions& options, const ModelConfig& config, const std::vector<CloudFile>& clouds) {
+  Json scenes = Json::array(), methods = Json::array();
+  for (const CloudFile& cloud : clouds) scenes.push_back(cloud.scene);
+  for (const modeling::ModelingMethod method : options.methods) methods.push_back(name_of(method));
+  ModelConfig described = config;
+  return Json{{"format", "tubebin results 1"},
+              {"tool_version", tool_version()},
+              {"dataset", fs::relative(fs::absolute(options.dataset), fs::absolute(options.results)).string()},
+              {"methods", methods},
+              {"ratios", options.ratios},
+              {"seed", config.modeling.seed},
+              {"scenes", scenes},
+              {"options",
+               Json::parse(modeling::format_options_json([&](Fields& fields) { describe(fields, described); }))}}
+             .dump(1) +
+         "\n";
+}
+
+/// Those whose runs this call does.
+std::vector<CloudFile> deal_clouds(const std::vector<CloudFile>& all, const BatchOptions& options) {
+  if (!options.shard) return all;
+  std::vector<std::int64_t> costs;
+  for (const CloudFile& cloud : all)
+    costs.push_back(jobs::modeling_cost(evaluation::parse_scene_name(cloud.scene).tubes));
+  std::vector<CloudFile> own;
+  std::int64_t cost = 0;
+  for (const std::size_t i : deal(costs, *options.shard)) {
+    own.push_back(all[i]);
+    cost += costs[i];
+  }
+  const std::int64_t whole = std::accumulate(costs.begin(), costs.end(), std::int64_t{0});
+  options.on_dealt(own.size(), all.size(), static_cast<double>(cost) / static_cast<double>(whole));
+  return own;
+}
+
+/// Adds methods, ratios and scenes that the folder holds already; what the runs depend on must be the same.
+std::string merge_index(const std::string& path, const std::string& wanted_text) {
+  Json wanted = Json::parse(wanted_text);
+  Json held;
+  try {
+    held = Json::parse(read_file(path));
+    const auto without_run = [](Json options) {  // each run has its own method, ratio and seed
+      options.erase("method");
+      options["filtering"].erase("ratio");
+      return options;
+    };
+    for (const char* key : {"format", "tool_version", "dataset", "seed", "options"}) {
+      const bool is_options = std::string_view(key) == "options";
+      const Json a = is_options ? without_run(held.at(key)) : held.at(key);
+      const Json b = is_options ? without_run(wanted.at(key)) : wanted.at(key);
+      if (a != b)
+        throw_config_error("{}: these results were made with {} = {}, not {}; choose another --output", path, key,
+                           a.dump(), b.dump());
+    }
+    for (const char* key : {"methods", "ratios", "scenes"})
+      for (const Json& value : held.at(key))
+        if (std::find(wanted[key].begin(), wanted[key].end(), value) == wanted[key].end()) wanted[key].push_back(value);
+    std::sort(wanted["ratios"].begin(), wanted["ratios"].end());
+  } catch (const Json::exception& error) {
+    throw_io_error("{}: is no index of results: {}", path, error.what());
+  }
+  return wanted.dump(1) + "\n";
+}
+
+/// All parts of a call write the same index, whose scenes are those of the whole call.
+void settle_index(const BatchOptions& options, const ModelConfig& config, const std::vector<CloudFile>& clouds) {
+  const std::string path = options.results + "/index.json";
+  const std::string wanted = format_index(options, config, clouds);
+  if (!fs::exists(path) && create_file_atomically(path, wanted)) return;
+  const std::string merged = merge_index(path, wanted);
+  if (merged != read_file(path)) write_file_atomically(path, merged);
+}
+
+std::string failures_path(const BatchOptions& options) {
+  return options.results + (options.shard ? "/failures." + options.shard->name() + ".jsonl" : "/failures.jsonl");
+}
+
+std::vector<ModelingRun> list_runs(const BatchOptions& options, const std::vector<CloudFile>& clouds) {
+  std::vector<ModelingRun> runs;
+  for (const auto& [scene, file] : clouds)
+    for (const modeling::ModelingMethod method : options.methods)
+      for (const double ratio : options.ratios) runs.push_back({scene, file, method, ratio});
+  return runs;
+}
+
+bool has_run(const BatchOptions& options, const ModelingRun& run) {
+  return fs::exists(options.results + "/" + run.folder()) ||
+         std::ranges::any_of(options.other_results,
+                             [&](const std::string& other) { return fs::exists(other + "/" + run.folder()); });
+}
+
+/// Removes what a killed run left of the runs that it was writing; at the end, too, what an interrupted one leaves.
+class NothingUnfinished {
+ public:
+  NothingUnfinished(const BatchOptions& options, const std::vector<CloudFile>& clouds)
+      : results_(options.results), is_part_(options.shard.has_value()), clouds_(clouds) {
+    remove();
+  }
+  ~NothingUnfinished() try {
+    // Of a part, the next call does it: another host may have been given this one's work.
+    if (!is_part_) remove();
+  } catch (const std::exception&) {  // the next call tries again
+  }
+  NothingUnfinished(const NothingUnfinished&) = delete;
+  NothingUnfinished& operator=(const NothingUnfinished&) = delete;
+
+ private:
+  void remove() const {
+    for (const CloudFile& cloud : clouds_)
+      if (const std::string folder = results_ + "/" + cloud.scene; fs::is_directory(folder))
+        jobs::remove_unfinished_folders(folder);
+  }
+
+  std::string results_;
+  bool is_part_;
+  const std::vector<CloudFile>& clouds_;
+};
+
+}  // namespace
+
+BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config,
+                          jobs::Progress::Style progress_style) try {
+  const auto start = std::chrono::steady_clock::now();
+  const scene::DatasetFiles dataset(options.dataset);
+  const auto all_clouds = choose_clouds(dataset, options);
+  const auto clouds = deal_clouds(all_clouds, options);
+  fs::create_directories(options.results);
+  const jobs::FolderLock lock(options.results,
+                              options.shard ? jobs::FolderLock::Kind::part : jobs::FolderLock::Kind::exclusive);
+  settle_index(options, config, all_clouds);
+  const NothingUnfinished nothing_unfinished(options, clouds);
+
+  const std::vector<ModelingRun> runs = list_runs(options, clouds);
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (!has_run(options, runs[i])) missing.push_back(i);
+
+  BatchReport report{.runs = runs.size(), .complete_before = runs.size() - missing.size(), .failed = {}};
+  jobs::Progress progress(missing.size(), "clouds", progress_style);
+  std::string failures;
+  const jobs::PoolEvents events{
+      .on_finished =
+          [&](const jobs::JobOutcome& outcome) {
+            progress.count_done();
+            if (outcome.succeeded) return;
+            const ModelingRun& run = runs[outcome.job];
+            const jobs::FailedAttempt& last = outcome.failed.back();
+            const std::string why = last.for_people();
+            report.failed.push_back(fmt::format("{}: {}", run.folder(), why));
+            failures +=
+                Json{{"scene", run.scene}, {"method", name_of(run.method)}, {"ratio", run.ratio}, {"error", why}}
+                    .dump() +
+                "\n";
+          },
+      .on_tick = [&] { progress.show(); }};
+  const jobs::PoolOptions pool_options{
+      .workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit};
+  const jobs::PoolReport pool = jobs::run_jobs(
+      missing, pool_options, [&](std::size_t job, int) { return do_run(runs[job], dataset, options, config); }, events);
+  if (!failures.empty()) write_file_atomically(failures_path(options), failures);
+  else fs::remove(failures_path(options));
+  report.made = pool.succeeded;
+  report.signal = pool.signal;
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+} catch (const fs::filesystem_error& error) {
+  throw_io_error("{}", error.what());
+}
+
+}  // namespace tubebin::results

@@ -1,0 +1,128 @@
+#include "tubebin/results/predictions.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "evaluation/parallel.hpp"
+#include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/core/error.hpp"
+#include "tubebin/scene/dataset_files.hpp"
+#include "tubebin/scene/scene_json.hpp"
+
+namespace tubebin::results {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first of the files `stem`.pcd and `stem`.ply that exists; empty if neither does.
+std::string find_cloud(const std::string& stem) {
+  for (const char* format : {".pcd", ".ply"})
+    if (fs::is_regular_file(stem + format)) return stem + format;
+  return "";
+}
+
+/// Names of the data set's scenes that have a cloud, in order.
+std::vector<std::string> list_scenes(const scene::DatasetFiles& dataset) {
+  if (!fs::exists(dataset.dataset())) throw_io_error("{}: is no folder", dataset.dataset());
+  std::vector<std::string> scenes = dataset.scenes();
+  std::erase(scenes, ".");
+  if (scenes.empty())
+    throw_io_error("{}: no scene with a cloud.pcd or cloud.ply is in it, so it is no data set", dataset.dataset());
+  return scenes;
+}
+
+/// The files of a prediction; `labeled` is empty where there is none.
+struct PredictionFiles {
+  std::string labeled;
+  std::string filtered;  ///< empty: the scene's own cloud
+};
+
+PredictionFiles find_prediction(const std::string& folder, const std::string& scene) {
+  const std::string stem = folder + "/" + scene;
+  if (std::string file = find_cloud(stem); !file.empty()) return {file, ""};
+  return {find_cloud(stem + "/labeled"), find_cloud(stem + "/filtered")};
+}
+
+cloud::Cloud check_ground_truth(cloud::Cloud cloud, const std::string& path) {
+  if (cloud.labels.empty()) throw_io_error("{}: has no label field, so it is no ground truth", path);
+  cloud.colors.clear();
+  return cloud;
+}
+
+/// Of the two fields of a prediction, the one that is asked for.
+void keep_field(cloud::Cloud& cloud, evaluation::SegmentField field, const std::string& path) {
+  if (field == evaluation::SegmentField::automatic) return;
+  std::vector<std::uint32_t>& wanted = field == evaluation::SegmentField::label ? cloud.labels : cloud.colors;
+  std::vector<std::uint32_t>& other = field == evaluation::SegmentField::label ? cloud.colors : cloud.labels;
+  if (wanted.empty() && cloud.size() > 0)
+    throw_io_error("{}: has no {}", path, field == evaluation::SegmentField::label ? "label field" : "colours");
+  other.clear();
+}
+
+evaluation::RunScore score_scene(const scene::DatasetFiles& dataset, const std::string& scene,
+                                 const PredictionFiles& files, evaluation::RunKey key, evaluation::SegmentField field) {
+  const std::string cloud = dataset.cloud_of(scene);
+  const std::string truth_path = files.filtered.empty() ? dataset.place(scene, cloud) : files.filtered;
+  const cloud::Cloud truth =
+      check_ground_truth(files.filtered.empty() ? cloud::parse_cloud(dataset.read(scene, cloud), truth_path)
+                                                : cloud::read_cloud(truth_path),
+                         truth_path);
+  cloud::Cloud labeled;
+  if (!files.labeled.empty()) {
+    labeled = cloud::read_cloud(files.labeled);
+    keep_field(labeled, field, files.labeled);
+  }
+  const evaluation::PairedIds pairs = evaluation::pair_clouds({truth, truth_path}, {labeled, files.labeled});
+  const evaluation::Contingency contingency = evaluation::count_pairs(pairs.truth, pairs.predicted, pairs.bin_id);
+  const evaluation::Matching matching = evaluation::match_segments(
+      contingency, files.filtered.empty() ? evaluation::BinPoints::left_out : evaluation::BinPoints::counted);
+
+  std::optional<evaluation::SceneTruth> scene_truth;
+  if (dataset.has(scene, "scene.json")) {
+    const scene::SceneRecord record =
+        scene::parse_scene_json(dataset.read(scene, "scene.json"), dataset.place(scene, "scene.json"));
+    key.tubes = static_cast<int>(record.scene.tubes.size());
+    scene_truth.emplace(record.scene);
+  }
+  evaluation::RunScore run =
+      evaluation::score_run(key, contingency, matching, scene_truth ? &*scene_truth : nullptr, {});
+  run.failed = files.labeled.empty();
+  if (scene_truth) run.dataset = dataset.dataset();
+  run.filtered = truth_path;
+  run.labeled = files.labeled;
+  return run;
+}
+
+}  // namespace
+
+evaluation::Evaluation score_predictions(const std::string& dataset_path, const std::string& folder,
+                                         const PredictionOptions& options) {
+  const scene::DatasetFiles dataset(dataset_path);
+  const std::vector<std::string> scenes = list_scenes(dataset);
+  if (!fs::is_directory(folder)) throw_io_error("{}: is no folder", folder);
+  std::vector<PredictionFiles> files;
+  for (const std::string& scene : scenes) files.push_back(find_prediction(folder, scene));
+  if (std::all_of(files.begin(), files.end(), [](const PredictionFiles& f) { return f.labeled.empty(); }))
+    throw_io_error("{}: has no prediction for any of the {} scenes of {}; expected {}/{}.pcd or {}/{}/labeled.pcd",
+                   folder, scenes.size(), dataset_path, folder, scenes.front(), folder, scenes.front());
+
+  evaluation::Evaluation evaluation;
+  evaluation.source = folder;
+
+  evaluation.missing_counts_as_zero = true;
+  evaluation.runs.resize(scenes.size());
+  const std::string method = fs::path(folder).lexically_normal().filename().string();
+  evaluation::parallel_for(
+      scenes.size(), options.jobs,
+      [&](std::size_t i) {
+        evaluation::RunKey key = evaluation::parse_scene_name(scenes[i]);
+        key.method = method.empty() || method == "." ? "predictions" : method;
+        evaluation.runs[i] = score_scene(dataset, scenes[i], files[i], key, options.field);
+      },
+      options.on_progress);
+  for (std::size_t i = 0; i < scenes.size(); ++i)
+    if (files[i].labeled.empty()) evaluation.missing.push_back(scenes[i]);
+  return evaluation;
+}
+
+}  // namespace tubebin::results

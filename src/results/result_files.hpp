@@ -1,0 +1,47 @@
+/// The files of a results folder, one parser each (docs/results_format.md). All throw IoError, which names the file and
+/// the place in it, for text that is not as that page says; nothing that the text states is trusted before it is checked.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tubebin/evaluation/centerline.hpp"
+#include "tubebin/evaluation/contingency.hpp"
+
+namespace tubebin::results {
+
+/// index.json: what the folder is to hold.
+struct ResultsIndex {
+  std::string dataset;  ///< as it stands there, relative to the folder
+  std::vector<std::string> methods;
+  std::vector<double> ratios;
+  std::vector<std::string> scenes;
+  std::string configuration;  ///< what all runs depend on, as JSON
+  std::string conditions;     ///< the same without the data set's place and what each run has its own of
+};
+
+/// result.json: the points of one run.
+struct RunCounts {
+  std::string scene;
+  std::string set;
+  int tubes = 0;
+  int case_number = 0;
+  int model_tubes = 0;
+  evaluation::Contingency contingency;
+};
+
+ResultsIndex parse_results_index(std::string_view text, const std::string& name);
+RunCounts parse_run_counts(std::string_view text, const std::string& name);
+/// model.json: the centreline of each tube.
+std::vector<evaluation::Centerline> parse_model_centerlines(std::string_view text, const std::string& name);
+/// times.json: the modelling time, seconds.
+double parse_modeling_seconds(std::string_view text, const std::string& name);
+/// failures.jsonl: reasons by run folder.
+std::map<std::string, std::string> parse_failures(std::string_view text, const std::string& name);
+
+/// "A10/007/centerline_0.3": the ratio with as few digits as tell it exactly.
+std::string run_folder(const std::string& scene, const std::string& method, double ratio);
+
+}  // namespace tubebin::results

@@ -1,0 +1,227 @@
+#include "tubebin/results/results_folder.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "evaluation/parallel.hpp"
+#include "results/result_files.hpp"
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/error.hpp"
+#include "tubebin/scene/dataset_files.hpp"
+#include "tubebin/scene/scene_json.hpp"
+
+namespace tubebin::results {
+namespace {
+
+namespace fs = std::filesystem;
+
+ResultsIndex read_index(const std::string& folder) {
+  if (!fs::is_directory(folder)) throw_io_error("{}: is no folder", folder);
+  const std::string path = folder + "/index.json";
+  if (!fs::exists(path))
+    throw_io_error(
+        "{}: has no index.json, so it is no results folder of model_tubes{}", folder,
+        fs::exists(folder + "/manifest.jsonl") ? "; it is a data set, which --predictions can be scored on" : "");
+  return parse_results_index(read_file(path), path);
+}
+
+/// Of the last call, and of the parts of one.
+std::map<std::string, std::string> read_failures(const std::string& folder) {
+  std::map<std::string, std::string> failures;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("failures.") && name.ends_with(".jsonl"))
+      failures.merge(parse_failures(read_file(entry.path().string()), entry.path().string()));
+  }
+  return failures;
+}
+
+evaluation::RunScore read_run(const std::string& folder, evaluation::RunKey key, const evaluation::SceneTruth* truth) {
+  const std::string path = folder + "/result.json";
+  const RunCounts counts = parse_run_counts(read_file(path), path);
+  if (counts.scene != key.scene)
+    throw_io_error("{}: /scene: \"{}\" is not valid; valid: \"{}\", the folder's scene", path, counts.scene, key.scene);
+  key.set = counts.set;
+  key.tubes = counts.tubes;
+  key.case_number = counts.case_number;
+  std::vector<evaluation::Centerline> model;
+  if (const std::string file = folder + "/model.json"; truth != nullptr && fs::exists(file))
+    model = parse_model_centerlines(read_file(file), file);
+  evaluation::RunScore run =
+      evaluation::score_run(key, counts.contingency, evaluation::match_segments(counts.contingency), truth, model);
+  // Segments without a point in the filtered cloud are tubes of the model all the same.
+  run.scores.predicted_tubes = std::max(run.scores.predicted_tubes, counts.model_tubes);
+  run.folder = folder;
+  if (fs::exists(folder + "/filtered.pcd") && fs::exists(folder + "/labeled.pcd")) {
+    run.filtered = folder + "/filtered.pcd";
+    run.labeled = folder + "/labeled.pcd";
+  }
+  if (const std::string file = folder + "/times.json"; fs::exists(file))
+    run.seconds = parse_modeling_seconds(read_file(file), file);
+  return run;
+}
+
+/// A run without a result, with every tube of the scene missed.
+evaluation::RunScore failed_run(evaluation::RunKey key, const scene::SceneRecord* scene,
+                                const evaluation::SceneTruth* truth) {
+  evaluation::Contingency contingency;
+  if (scene != nullptr) {
+    for (std::size_t k = 0; k < scene->tube_pixels.size(); ++k) {
+      contingency.truth_ids.push_back(static_cast<evaluation::SegmentId>(k + 1));
+      contingency.unlabeled.push_back(static_cast<std::int64_t>(scene->tube_pixels[k]));
+    }
+    key.tubes = static_cast<int>(scene->scene.tubes.size());
+  }
+  contingency.counts.resize(static_cast<Eigen::Index>(contingency.truth_ids.size()), 0);
+  evaluation::RunScore run =
+      evaluation::score_run(key, contingency, evaluation::match_segments(contingency), truth, {});
+  run.failed = true;
+  return run;
+}
+
+/// What one scene adds to the evaluation.
+struct SceneRuns {
+  std::vector<evaluation::RunScore> runs;
+  std::vector<std::string> missing;
+  std::vector<std::string> failed;
+  bool has_truth = false;
+};
+
+SceneRuns read_scene_runs(const std::string& folder, const ResultsIndex& index, const scene::DatasetFiles& dataset,
+                          const std::string& scene, const std::map<std::string, std::string>& failures) {
+  std::optional<scene::SceneRecord> record;
+  std::optional<evaluation::SceneTruth> truth;
+  if (dataset.has(scene, "scene.json")) {
+    record = scene::parse_scene_json(dataset.read(scene, "scene.json"), dataset.place(scene, "scene.json"));
+    truth.emplace(record->scene);
+  }
+  const evaluation::SceneTruth* known_truth = truth ? &*truth : nullptr;
+
+  SceneRuns result;
+  result.has_truth = truth.has_value();
+  for (const std::string& method : index.methods) {
+    for (const double ratio : index.ratios) {
+      evaluation::RunKey key = evaluation::parse_scene_name(scene);
+      key.method = method;
+      key.ratio = ratio;
+      const std::string run = run_folder(scene, method, ratio);
+      if (fs::exists(folder + "/" + run)) {
+        result.runs.push_back(read_run(folder + "/" + run, key, known_truth));
+        if (truth) result.runs.back().dataset = index.dataset;
+      } else if (const auto failure = failures.find(run); failure != failures.end()) {
+        result.runs.push_back(failed_run(key, record ? &*record : nullptr, known_truth));
+        result.failed.push_back(fmt::format("{}: {}", key.name(), failure->second));
+      } else {
+        result.missing.push_back(key.name());
+      }
+    }
+  }
+  return result;
+}
+
+void append(evaluation::Evaluation& evaluation, SceneRuns& scene) {
+  const auto move_all = [](auto& from, auto& to) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  };
+  move_all(scene.runs, evaluation.runs);
+  move_all(scene.missing, evaluation.missing);
+  move_all(scene.failed, evaluation.failed);
+}
+
+/// What was read from one folder.
+struct FolderRuns {
+  std::string folder;
+  std::string conditions;       ///< that its runs were made under
+  std::set<std::string> names;  ///< of the runs that it has or is to have
+};
+
+/// One folder's runs, added to the evaluation.
+FolderRuns read_folder(const std::string& folder, const ResultsOptions& options, evaluation::Evaluation& evaluation) {
+  ResultsIndex index = read_index(folder);
+  index.dataset =
+      options.dataset.empty() ? (fs::path(folder) / index.dataset).lexically_normal().string() : options.dataset;
+  const std::map<std::string, std::string> failures = read_failures(folder);
+  const scene::DatasetFiles dataset(index.dataset);
+  std::vector<SceneRuns> scenes(index.scenes.size());
+  evaluation::parallel_for(
+      scenes.size(), options.jobs,
+      [&](std::size_t i) { scenes[i] = read_scene_runs(folder, index, dataset, index.scenes[i], failures); },
+      options.on_progress);
+
+  FolderRuns read{.folder = folder, .conditions = index.conditions, .names = {}};
+  const std::size_t runs_before = evaluation.runs.size();
+  const std::size_t missing_before = evaluation.missing.size();
+  std::size_t without_truth = 0;
+  for (SceneRuns& scene : scenes) {
+    without_truth += scene.has_truth ? 0 : 1;
+    append(evaluation, scene);
+  }
+  if (evaluation.runs.size() == runs_before)
+    throw_io_error("{}: has none of the runs that its index.json names", folder);
+  if (without_truth > 0)
+    evaluation.notes.push_back(
+        fmt::format("{} of {} scenes have no scene.json in {}: they add nothing to centreline errors and "
+                    "visibility (--dataset "
+                    "DIR says where the data set is)",
+                    without_truth, scenes.size(), index.dataset));
+  evaluation.source += (evaluation.source.empty() ? "" : ", ") + folder;
+  evaluation.configuration += fmt::format("{}:\n{}\n", folder, index.configuration);
+  if (const std::string config = index.dataset + "/config.yaml"; fs::exists(config))
+    evaluation.configuration += fmt::format("\n{}:\n{}\n", config, read_file(config));
+  for (std::size_t i = runs_before; i < evaluation.runs.size(); ++i) read.names.insert(evaluation.runs[i].key.name());
+  read.names.insert(evaluation.missing.begin() + static_cast<std::ptrdiff_t>(missing_before), evaluation.missing.end());
+  return read;
+}
+
+/// Folders that are to have the same run are parts of one call, and then they must have been made alike.
+void require_same_conditions(const std::vector<FolderRuns>& folders) {
+  std::map<std::string, const FolderRuns*> asked;
+  for (const FolderRuns& folder : folders)
+    for (const std::string& name : folder.names) {
+      const FolderRuns& other = *asked.try_emplace(name, &folder).first->second;
+      if (other.conditions != folder.conditions)
+        throw_io_error("{} and {}: both are to have the run {}, but with another version, seed or options: {} and {}",
+                       other.folder, folder.folder, name, other.conditions, folder.conditions);
+    }
+}
+
+void require_distinct_runs(const evaluation::Evaluation& evaluation) {
+  std::set<std::string> names;
+  for (const evaluation::RunScore& run : evaluation.runs)
+    if (!names.insert(run.key.name()).second)
+      throw_io_error("{}: the run {} is there twice", evaluation.source, run.key.name());
+}
+
+/// Each part's index asks for all runs of the call; what no folder has is missing, once.
+void keep_really_missing(evaluation::Evaluation& evaluation) {
+  std::set<std::string> known;
+  for (const evaluation::RunScore& run : evaluation.runs) known.insert(run.key.name());
+  std::erase_if(evaluation.missing, [&](const std::string& name) { return !known.insert(name).second; });
+}
+
+/// As they would stand in the index of one folder: scenes in order, then methods and ratios.
+void sort_runs(evaluation::Evaluation& evaluation) {
+  std::ranges::stable_sort(evaluation.runs, {}, [](const evaluation::RunScore& run) {
+    return std::tuple(run.key.tubes, run.key.set, run.key.case_number, run.key.scene);
+  });
+}
+
+}  // namespace
+
+evaluation::Evaluation read_results(const std::vector<std::string>& folders, const ResultsOptions& options) {
+  evaluation::Evaluation evaluation;
+  std::vector<FolderRuns> read;
+  for (const std::string& folder : folders) read.push_back(read_folder(folder, options, evaluation));
+  require_same_conditions(read);
+  require_distinct_runs(evaluation);
+  if (folders.size() > 1) {
+    keep_really_missing(evaluation);
+    sort_runs(evaluation);
+  }
+  return evaluation;
+}
+
+}  // namespace tubebin::results

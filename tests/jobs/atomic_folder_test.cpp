@@ -1,0 +1,53 @@
+#include "tubebin/jobs/atomic_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "support/program.hpp"
+#include "tubebin/core/error.hpp"
+
+namespace tubebin::testing {
+
+using namespace jobs;
+namespace {
+
+namespace fs = std::filesystem;
+
+// As where a job is given to two machines: the one that starts later clears what the first is writing.
+TEST(WholeFolder, IsWholeOrNotThereWhileAnotherClears) {
+  const TemporaryFolder folder;
+  const std::string data = folder / "Q1", scene = data + "/001";
+  fs::create_directory(data);
+  std::map<std::string, std::string> files;
+  for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h"}) files[name] = "bytes";
+
+  std::atomic<bool> done = false;
+  std::atomic<int> failed_clearings = 0;
+  std::thread clearer([&] {
+    while (!done) try {
+        remove_unfinished_folders(data);
+      } catch (const IoError&) {
+        ++failed_clearings;
+      }
+  });
+  int written = 0;
+  for (int round = 0; round < 500; ++round) {
+    try {
+      begin_whole_folder(scene, files)();
+    } catch (const IoError&) {
+      continue;
+    }
+    ++written;
+    for (const auto& [name, bytes] : files) EXPECT_TRUE(fs::exists(scene + "/" + name)) << name << " of " << round;
+  }
+  done = true;
+  clearer.join();
+  EXPECT_EQ(failed_clearings, 0);
+  remove_unfinished_folders(data);
+  EXPECT_EQ(std::distance(fs::directory_iterator(data), fs::directory_iterator()), written > 0 ? 1 : 0);
+}
+
+}  // namespace
+}  // namespace tubebin::testing

@@ -1,0 +1,175 @@
+#include "tubebin/results/results_folder.hpp"
+
+#include <gmock/gmock.h>
+
+#include "support/synthetic_results.hpp"
+#include "tubebin/core/error.hpp"
+#include "tubebin/evaluation/result_tables.hpp"
+
+namespace tubebin {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using testing::TemporaryFolder;
+namespace fs = std::filesystem;
+
+class ResultsFolder : public ::testing::Test {
+ protected:
+  void SetUp() override { testing::write_synthetic_sweep(folder_.path(), sweep_); }
+  std::string results() const { return (folder_.path() / "results").string(); }
+  fs::path run() const { return folder_.path() / "results" / "B2" / "001" / "centerline_0.3"; }
+  std::string error() const {
+    try {
+      read_results({results()}, {});
+    } catch (const IoError& e) {
+      return e.what();
+    }
+    return "no error";
+  }
+
+  testing::SyntheticSweep sweep_;
+  TemporaryFolder folder_;
+};
+
+TEST_F(ResultsFolder, EveryRunHasItsMicroRecall) {
+  const evaluation::Evaluation evaluation = read_results({results()}, {"", 2, {}});
+  ASSERT_THAT(evaluation.runs, SizeIs(24));
+  EXPECT_THAT(evaluation.missing, IsEmpty());
+  EXPECT_THAT(evaluation.notes, IsEmpty());
+  for (const evaluation::RunScore& run : evaluation.runs) {
+    EXPECT_DOUBLE_EQ(run.micro_recall, 1.0 - testing::wrong_points(run.key) / 1000.0) << run.key.name();
+    EXPECT_DOUBLE_EQ(*run.seconds, testing::modelling_seconds(run.key));
+    ASSERT_THAT(run.scores.tubes, SizeIs(run.key.tubes));
+    EXPECT_NEAR(run.scores.tubes[0].centerline_error->model_mean, 0.0004, 1e-9);
+    EXPECT_EQ(run.scores.tubes[0].visible_fraction, 1.0);
+  }
+}
+
+TEST_F(ResultsFolder, ThreadsDoNotChangeTheResult) {
+  EXPECT_EQ(evaluation::format_results(read_results({results()}, {"", 1, {}}), evaluation::TableFormat::json),
+            evaluation::format_results(read_results({results()}, {"", 4, {}}), evaluation::TableFormat::json));
+}
+
+TEST_F(ResultsFolder, RunsThatAreNotThereYetAreNamed) {
+  fs::remove_all(run());
+  const evaluation::Evaluation evaluation = read_results({results()}, {});
+  EXPECT_THAT(evaluation.runs, SizeIs(23));
+  EXPECT_THAT(evaluation.missing, ElementsAre("B2/001 centerline 0.3"));
+}
+
+TEST_F(ResultsFolder, FailedRunsCountAsZero) {
+  fs::remove_all(run());
+  testing::write_text(folder_.path() / "results" / "failures.jsonl",
+                      R"({"scene": "B2/001", "method": "centerline", "ratio": 0.3, "error": "no point in the bin"})"
+                      "\n");
+  const evaluation::Evaluation evaluation = read_results({results()}, {});
+  EXPECT_THAT(evaluation.runs, SizeIs(24));
+  EXPECT_THAT(evaluation.failed, ElementsAre("B2/001 centerline 0.3: no point in the bin"));
+  for (const evaluation::RunScore& one : evaluation.runs)
+    if (one.failed) {
+      EXPECT_EQ(one.micro_recall, 0.0);
+      EXPECT_EQ(one.scores.hoover.missed, 2);
+    }
+}
+
+TEST_F(ResultsFolder, WithoutItsDataSetItSaysWhatCannotBeMeasured) {
+  fs::rename(folder_.path() / "dataset", folder_.path() / "moved");
+  const evaluation::Evaluation evaluation = read_results({results()}, {});
+  EXPECT_THAT(evaluation.notes, ElementsAre(HasSubstr("12 of 12 scenes have no scene.json")));
+  EXPECT_THAT(evaluation.runs.front().by_visibility, IsEmpty());
+  const evaluation::Evaluation moved = read_results({results()}, {(folder_.path() / "moved").string(), 1, {}});
+  EXPECT_THAT(moved.notes, IsEmpty());
+}
+
+TEST_F(ResultsFolder, DamagedFilesAreNamed) {
+  const std::string good = read_file((run() / "result.json").string());
+  fs::resize_file(run() / "result.json", good.size() / 2);
+  EXPECT_THAT(error(), AllOf(HasSubstr("B2/001/centerline_0.3/result.json:"), HasSubstr("not valid JSON")));
+  testing::write_text(run() / "result.json", "");
+  EXPECT_THAT(error(), HasSubstr("the file is empty"));
+  nlohmann::json json = nlohmann::json::parse(good);
+  json["contingency"][0][2] = -4;
+  testing::write_text(run() / "result.json", json.dump());
+  EXPECT_THAT(error(), HasSubstr("result.json: /contingency/0/2: -4 is not valid"));
+  json["contingency"][0][2] = 1;
+  testing::write_text(run() / "result.json", json.dump());
+  EXPECT_THAT(error(), HasSubstr("/filtered_points: 2000 is not valid"));
+  json.erase("contingency");
+  testing::write_text(run() / "result.json", json.dump());
+  EXPECT_THAT(error(), HasSubstr("cannot be scored"));
+  fs::remove(run() / "result.json");
+  EXPECT_THAT(error(), HasSubstr("B2/001/centerline_0.3/result.json"));
+}
+
+TEST_F(ResultsFolder, FoldersThatAreNoResults) {
+  for (const char* scene : {"A1", "A2", "A3", "B1", "B2", "B3"}) fs::remove_all(folder_.path() / "results" / scene);
+  EXPECT_THAT(error(), HasSubstr("has none of the runs"));
+  testing::write_text(folder_.path() / "results" / "index.json", "{}");
+  EXPECT_THAT(error(), HasSubstr("index.json: /format: missing"));
+  testing::write_text(folder_.path() / "results" / "index.json", "hello");
+  EXPECT_THAT(error(), HasSubstr("index.json:1:1: not valid JSON"));
+  fs::remove(folder_.path() / "results" / "index.json");
+  EXPECT_THAT(error(), HasSubstr("has no index.json"));
+  fs::remove_all(folder_.path() / "results");
+  EXPECT_THAT(error(), HasSubstr("is no folder"));
+}
+
+TEST_F(ResultsFolder, GroupsAreMeansOverTheirCases) {
+  const std::vector<evaluation::GroupSummary> groups = evaluation::summarize(read_results({results()}, {}).runs);
+  ASSERT_THAT(groups, SizeIs(12));
+  const evaluation::GroupSummary& first = groups.front();
+  EXPECT_EQ(first.key, (evaluation::GroupKey{"centerline", "A", 1, 0.3}));
+  EXPECT_EQ(first.runs, 2);
+  EXPECT_NEAR(first.micro_recall.mean, 1.0 - (18.0 + 0.5) / 1000.0, 1e-12);
+  EXPECT_NEAR(first.seconds->mean, 0.016, 1e-12);
+  EXPECT_EQ(first.pooled.tubes, 2);
+  EXPECT_NEAR(first.pooled.centerline_model_mean, 0.0004, 1e-9);
+}
+
+TEST_F(ResultsFolder, TablesHoldTheFigures) {
+  const evaluation::Evaluation evaluation = read_results({results()}, {});
+  const std::vector<evaluation::GroupSummary> groups = evaluation::summarize(evaluation.runs);
+  const evaluation::Table figure_8 = evaluation::figure_8_table(groups, "centerline");
+  EXPECT_THAT(figure_8.headers, ElementsAre("tubes", "set A", "set B"));
+  ASSERT_THAT(figure_8.rows, SizeIs(3));
+  EXPECT_NEAR(*figure_8.rows[1][2].value, 1.0 - 26.5 / 1000.0, 1e-12);
+  const evaluation::Table figure_9 = evaluation::figure_9_table(groups, "centerline");
+  EXPECT_THAT(figure_9.title, HasSubstr("3 tubes"));  // the nearest to the paper's ten
+  EXPECT_THAT(figure_9.rows, SizeIs(2));
+  const evaluation::Table times = evaluation::time_grid(groups, "centerline", "B");
+  EXPECT_THAT(times.headers, ElementsAre("ratio", "1", "2", "3"));
+  EXPECT_DOUBLE_EQ(*times.rows[1][3].value, 0.07);
+  EXPECT_THAT(evaluation::visibility_table(evaluation).rows, SizeIs(1));
+  EXPECT_THAT(evaluation::group_table(groups).rows, SizeIs(12));
+}
+
+TEST_F(ResultsFolder, FormatsAgree) {
+  const evaluation::Evaluation evaluation = read_results({results()}, {});
+  const auto json = nlohmann::json::parse(evaluation::format_results(evaluation, evaluation::TableFormat::json));
+  EXPECT_EQ(json["groups"].size(), 12U);
+  const std::string csv = evaluation::format_results(evaluation, evaluation::TableFormat::csv);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
+  EXPECT_THAT(csv, HasSubstr(fmt::format("{}", json["groups"][0]["micro_recall"].get<double>())));
+  EXPECT_THAT(evaluation::format_results(evaluation, evaluation::TableFormat::markdown),
+              HasSubstr("| ratio | 1 | 2 | 3 |"));
+  EXPECT_THAT(evaluation::format_results(evaluation, evaluation::TableFormat::table), HasSubstr("(Figure 8)"));
+}
+
+TEST(SceneName, TellsSetTubesAndCase) {
+  const evaluation::RunKey key = evaluation::parse_scene_name("A10/007");
+  EXPECT_EQ(key.set, "A");
+  EXPECT_EQ(key.tubes, 10);
+  EXPECT_EQ(key.case_number, 7);
+  EXPECT_EQ(evaluation::parse_scene_name("my_bin_2/3").set, "my_bin_");
+  EXPECT_EQ(evaluation::parse_scene_name("lab/left").set, "lab");
+  EXPECT_EQ(evaluation::parse_scene_name("lab/left").tubes, 0);
+  EXPECT_EQ(evaluation::parse_scene_name("42/1").set, "42");
+}
+
+}  // namespace
+}  // namespace tubebin
