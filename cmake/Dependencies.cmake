@@ -12,6 +12,8 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(ODE REQUIRED IMPORTED_TARGET ode)
 add_library(tubebin::ode ALIAS PkgConfig::ODE)
 
+# sine and the like that give the same bits on every processor
+pkg_check_modules(SLEEF REQUIRED IMPORTED_TARGET sleef)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 # Previews alone need OSMesa (gone from Mesa 25.1); without it everything else works.
 pkg_check_modules(OSMESA osmesa)
