@@ -42,7 +42,7 @@ scene::SceneRecord rescan(const fs::path& file, const std::string& dataset) {
   scene::SceneRecord record;
   record.id = scene_name(file.stem().string());
   record.scene = published_scene(file.string());
-  const scan::Scan scanned = scan(record.scene);
+  const scan::Scan scanned = scan::scan(record.scene);
   record.window = scanned.window;
   record.tube_pixels = scanned.tube_pixels;
   record.colors = cloud::label_colors(record.scene.tubes.size());
@@ -58,7 +58,7 @@ scene::SceneRecord rescan(const fs::path& file, const std::string& dataset) {
 int main(int argc, char** argv) try {
   if (argc < 4) throw_config_error("usage: piles_table PUBLISHED RESCANNED DATASET...");
   std::map<std::pair<std::string, int>, evaluation::PileComparison> comparisons;
-  const auto comparison = [&](const std::string& id) -> PileComparison& {
+  const auto comparison = [&](const std::string& id) -> evaluation::PileComparison& {
     const evaluation::RunKey key = evaluation::parse_scene_name(id);
     evaluation::PileComparison& found = comparisons[{key.set, key.tubes}];
     found.name = fmt::format("{}{}", key.set, key.tubes);

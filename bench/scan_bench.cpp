@@ -32,8 +32,8 @@ BENCHMARK(BM_BuildTree)->ArgName("tubes")->Arg(1)->Arg(10)->Arg(100)->Unit(bench
 
 void BM_ScanBinWindow(benchmark::State& state) {
   const scene::Scene scene = scene_of(static_cast<int>(state.range(0)), scene::ScanRegion::bin);
-  for (auto _ : state) benchmark::DoNotOptimize(scan(scene).cloud.points.data());
-  report_pixels(state, scan(scene));
+  for (auto _ : state) benchmark::DoNotOptimize(scan::scan(scene).cloud.points.data());
+  report_pixels(state, scan::scan(scene));
 }
 BENCHMARK(BM_ScanBinWindow)
     ->ArgName("tubes")
@@ -48,15 +48,15 @@ BENCHMARK(BM_ScanBinWindow)
 
 void BM_ScanTubesAlone(benchmark::State& state) {
   const scene::Scene scene = scene_of(10, scene::ScanRegion::tubes);
-  for (auto _ : state) benchmark::DoNotOptimize(scan(scene).cloud.points.data());
-  report_pixels(state, scan(scene));
+  for (auto _ : state) benchmark::DoNotOptimize(scan::scan(scene).cloud.points.data());
+  report_pixels(state, scan::scan(scene));
 }
 BENCHMARK(BM_ScanTubesAlone)->Unit(benchmark::kMillisecond);
 
 void BM_ScanFullImage(benchmark::State& state) {
   const scene::Scene scene = scene_of(10, scene::ScanRegion::full);
-  for (auto _ : state) benchmark::DoNotOptimize(scan(scene).cloud.points.data());
-  report_pixels(state, scan(scene));
+  for (auto _ : state) benchmark::DoNotOptimize(scan::scan(scene).cloud.points.data());
+  report_pixels(state, scan::scan(scene));
 }
 BENCHMARK(BM_ScanFullImage)->Unit(benchmark::kMillisecond);
 
@@ -66,8 +66,8 @@ void BM_ScanPixels(benchmark::State& state) {
   const int width = static_cast<int>(state.range(0));
   testing::look_closely(scene.scanner, width, width * 5 / 8);
   scene.scanner.horizontal_fov_deg = 14.0;
-  for (auto _ : state) benchmark::DoNotOptimize(scan(scene).cloud.points.data());
-  report_pixels(state, scan(scene));
+  for (auto _ : state) benchmark::DoNotOptimize(scan::scan(scene).cloud.points.data());
+  report_pixels(state, scan::scan(scene));
 }
 BENCHMARK(BM_ScanPixels)->ArgName("width")->Arg(240)->Arg(480)->Arg(960)->Arg(1920)->Unit(benchmark::kMillisecond);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/limits_text.hpp"
+
 namespace tubebin {
 namespace {
 
@@ -10,13 +12,6 @@ namespace {
 /// orthonormal enough is a little farther from it.
 constexpr double kOrthonormalTolerance = 1e-6;
 constexpr double kQuaternionTolerance = 1e-5;
-
-std::string limits_text(Limits limits) {
-  const Limits open;
-  if (limits.min == open.min && limits.max == open.max) return "a finite number";
-  if (limits.max == open.max) return fmt::format("a number of at least {}", limits.min);
-  return fmt::format("a number from {} to {}", limits.min, limits.max);
-}
 
 class FieldsFromJson : public Fields {
  public:

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "core/limits_text.hpp"
 #include "tubebin/core/yaml.hpp"
 
 namespace tubebin {
@@ -21,12 +22,7 @@ std::string place_of(const std::string& file, const YAML::Mark& mark) {
 }
 
 std::string valid_range(Limits limits, const char* unit) {
-  const std::string suffix = *unit ? fmt::format(" {}", unit) : "";
-  const Limits open;
-  if (limits.min == open.min && limits.max == open.max) return fmt::format("a finite number{}", suffix);
-  if (limits.max == open.max) return fmt::format("at least {}{}", limits.min, suffix);
-  if (limits.min == open.min) return fmt::format("at most {}{}", limits.max, suffix);
-  return fmt::format("{} to {}{}", limits.min, limits.max, suffix);
+  return limits_text(limits) + (*unit ? fmt::format(" {}", unit) : "");
 }
 
 /// Levenshtein distance, to suggest the key that was probably meant.

@@ -1,5 +1,6 @@
 #include <sstream>
 
+#include "core/limits_text.hpp"
 #include "tubebin/core/yaml.hpp"
 
 namespace tubebin {
@@ -18,14 +19,6 @@ std::string yaml_quoted(const std::string& text) {
   return out + '"';
 }
 
-std::string limits_text(Limits limits) {
-  const Limits open;
-  if (limits.min == open.min && limits.max == open.max) return "any";
-  if (limits.max == open.max) return fmt::format(">= {}", limits.min);
-  if (limits.min == open.min) return fmt::format("<= {}", limits.max);
-  return fmt::format("{} to {}", limits.min, limits.max);
-}
-
 /// Turns each field into its key, value text, unit, valid values and doc; subclasses lay them out.
 class TextFields : public Fields {
  public:
@@ -36,7 +29,7 @@ class TextFields : public Fields {
     entry(key, fmt::format("{}", value), unit, limits_text(limits), doc);
   }
   void seed(const char* key, std::uint64_t& value, const char* doc) override {
-    entry(key, fmt::format("{}", value), "", ">= 0", doc);
+    entry(key, fmt::format("{}", value), "", limits_text({.min = 0.0}), doc);
   }
   void flag(const char* key, bool& value, const char* doc) override {
     entry(key, value ? "true" : "false", "", "true, false", doc);

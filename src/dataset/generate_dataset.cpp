@@ -5,7 +5,7 @@
 #include <numeric>
 #include <optional>
 
-#include "scene_packer.hpp"
+#include "dataset/scene_packer.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
 
 namespace tubebin::dataset {

@@ -1,4 +1,4 @@
-#include "scene_packer.hpp"
+#include "dataset/scene_packer.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

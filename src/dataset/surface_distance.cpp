@@ -1,4 +1,4 @@
-#include "surface_distance.hpp"
+#include "dataset/surface_distance.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <map>
 #include <set>
 
-#include "scene_check.hpp"
-#include "surface_distance.hpp"
+#include "dataset/scene_check.hpp"
+#include "dataset/surface_distance.hpp"
 #include "tubebin/core/file_record.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
 #include "tubebin/dataset/verify_dataset.hpp"

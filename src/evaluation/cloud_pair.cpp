@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "position_index.hpp"
+#include "evaluation/position_index.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin::evaluation {

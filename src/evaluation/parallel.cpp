@@ -1,4 +1,4 @@
-#include "parallel.hpp"
+#include "evaluation/parallel.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "statistics.hpp"
+#include "evaluation/statistics.hpp"
 #include "tubebin/evaluation/centerline.hpp"
 
 namespace tubebin::evaluation {

@@ -1,4 +1,4 @@
-#include "position_index.hpp"
+#include "evaluation/position_index.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -3,7 +3,7 @@
 #include <bit>
 #include <map>
 
-#include "statistics.hpp"
+#include "evaluation/statistics.hpp"
 #include "tubebin/core/random.hpp"
 
 namespace tubebin::evaluation {

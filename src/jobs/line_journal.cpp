@@ -23,11 +23,4 @@ void LineJournal::append(const std::string& line) {
   complete_bytes_ = append_line(path_, O_CREAT, complete_bytes_, line);
 }
 
-void LineJournal::rewrite(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += line + '\n';
-  write_file_atomically(path_, text);
-  complete_bytes_ = text.size();
-}
-
 }  // namespace tubebin::jobs

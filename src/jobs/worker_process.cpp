@@ -35,7 +35,6 @@ void send_answer(int socket, WorkerAnswer::Kind kind, std::string text) {
     if (errno != EINTR) _exit(1);  // the parent is gone
 }
 
-/// Attempts one by one; the end of each that succeeded beside the next one.
 /// Clouds of megabytes come and go with every job. glibc would give their pages back each time, and clearing new ones
 /// costs as much as filling them.
 void keep_memory() {
@@ -44,6 +43,7 @@ void keep_memory() {
   mallopt(M_TRIM_THRESHOLD, 8 * kLargestThreshold);
 }
 
+/// Attempts one by one; the end of each that succeeded beside the next one.
 class Server {
  public:
   Server(int socket, const Work& work) : socket_(socket), work_(work) {}

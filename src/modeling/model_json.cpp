@@ -3,54 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "core/json_writer.hpp"
 #include "tubebin/core/version.hpp"
 
 namespace tubebin::modeling {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-class JsonFields : public Fields {
- public:
-  void number(const char* key, double& value, Limits, const char*, const char*) override { json_[key] = value; }
-  void integer(const char* key, int& value, Limits, const char*, const char*) override { json_[key] = value; }
-  void seed(const char* key, std::uint64_t& value, const char*) override { json_[key] = value; }
-  void flag(const char* key, bool& value, const char*) override { json_[key] = value; }
-  void text(const char* key, std::string& value, const char*) override { json_[key] = value; }
-  void vector(const char* key, Vec3& value, Limits, const char*, const char*) override {
-    json_[key] = {value.x(), value.y(), value.z()};
-  }
-  void integers(const char* key, std::vector<int>& value, Limits, const char*) override { json_[key] = value; }
-  void choice(const char* key, int& value, const std::vector<std::string>& names, const char*) override {
-    json_[key] = names.at(static_cast<std::size_t>(value));
-  }
-  void group(const char* key, const char*, const std::function<void(Fields&)>& describe_inner) override {
-    JsonFields inner;
-    describe_inner(inner);
-    json_[key] = inner.json_;
-  }
-  void list(const char* key, const char*, std::size_t size, const std::function<void(std::size_t)>&,
-            const std::function<void(Fields&, std::size_t)>& describe_element) override {
-    json_[key] = Json::array();
-    for (std::size_t i = 0; i < size; ++i) {
-      JsonFields inner;
-      describe_element(inner, i);
-      json_[key].push_back(inner.json_);
-    }
-  }
-  const Json& json() const { return json_; }
-
- private:
-  Json json_ = Json::object();
-};
-
-Json options_json(const std::function<void(Fields&)>& describe_options) {
-  JsonFields fields;
-  describe_options(fields);
-  return fields.json();
-}
+using Json = OrderedJson;
 
 /// To a tenth of a micrometre: below what a scanner tells, and short in the file.
 double rounded(double metres) { return std::round(metres * 1e7) / 1e7; }
@@ -103,13 +63,13 @@ std::string format_model_json(const ModelingResult& result, const std::vector<cl
                {"noise", rounded(result.noise)},
                {"spacing", rounded(result.spacing)},
                {"tubes", tubes},
-               {"options", options_json(describe_options)}};
+               {"options", fields_to_json(describe_options)}};
   if (with_seconds) json["seconds"] = seconds_json(result.seconds);
   return json.dump() + "\n";
 }
 
 std::string format_options_json(const std::function<void(Fields&)>& describe_options) {
-  return options_json(describe_options).dump();
+  return fields_to_json(describe_options).dump();
 }
 
 std::string format_times_json(const StageSeconds& seconds, double read_seconds) {

@@ -2,7 +2,6 @@
 
 #include <stdexcept>
 
-#include "tubebin/core/atomic_file.hpp"
 #include "tubebin/render/preview.hpp"
 
 namespace tubebin::render {
@@ -20,11 +19,6 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
     throw std::runtime_error(std::string("can't encode a PNG image: ") + header.message);
   bytes.resize(size);
   return bytes;
-}
-
-void write_png(const std::string& path, const Image& image) {
-  const std::vector<std::uint8_t> bytes = encode_png(image);
-  write_file_atomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace tubebin::render

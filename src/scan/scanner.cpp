@@ -134,11 +134,6 @@ Scan scan(const scene::Scene& scene, std::uint64_t seed) {
   return scan;
 }
 
-Scan scan_exactly(scene::Scene scene) {
-  scene.scanner.effects = {};
-  return scan(scene);
-}
-
 const char* embree_version() { return RTC_VERSION_STRING; }
 
 }  // namespace tubebin::scan

@@ -122,7 +122,7 @@ void write_scanned_dataset(const fs::path& dataset, const std::vector<std::strin
     scene::SceneRecord record = testing::synthetic_scene(name, 3, 5);
     record.scene.scanner.width = 480;
     record.scene.scanner.height = 300;
-    const scan::Scan scanned = scan(record.scene);
+    const scan::Scan scanned = scan::scan(record.scene);
     record.window = scanned.window;
     record.tube_pixels = scanned.tube_pixels;
     fs::create_directories(dataset / name);

@@ -21,7 +21,7 @@ using ::testing::Not;
 void keep_clouds(const std::filesystem::path& folder, const std::string& scene_name, int tubes,
                  const std::vector<double>& ratios) {
   const scene::SceneRecord record = testing::synthetic_scene(scene_name, tubes, 5);
-  cloud::Cloud full = scan(record.scene).cloud;
+  cloud::Cloud full = scan::scan(record.scene).cloud;
   Random random(1);
   for (const double ratio : ratios) {
     cloud::Cloud filtered;

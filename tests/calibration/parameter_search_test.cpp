@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-namespace tubebin {
+namespace tubebin::calibration {
 namespace {
 
 const std::vector<SearchRange> kRanges = {{.low = -2.0, .high = 3.0},
@@ -123,4 +123,4 @@ TEST(SearchRange, ValuesAndPlacesAgree) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::calibration

@@ -13,7 +13,7 @@
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/random.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 namespace {
 
 constexpr CloudFormat kFormats[] = {CloudFormat::pcd_binary, CloudFormat::pcd_compressed, CloudFormat::pcd_ascii,
@@ -279,4 +279,4 @@ TEST(CloudIo, WritingNamesThePathThatFails) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::cloud

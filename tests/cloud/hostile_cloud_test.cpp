@@ -5,7 +5,7 @@
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/random.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 namespace {
 
 using ::testing::AllOf;
@@ -172,4 +172,4 @@ TEST(HostileClouds, EveryPrefixAndRandomDamageIsSurvived) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::cloud

@@ -7,7 +7,7 @@
 
 #include "tubebin/core/error.hpp"
 
-namespace tubebin {
+namespace tubebin::cloud {
 namespace {
 
 /// "Redmean" distance (T. Riemersma, "Colour metric"): a second opinion on how different two colours look, 0
@@ -59,4 +59,4 @@ TEST(LabelColors, AreWellApartUpToTwentyTubes) {
 TEST(LabelColors, MoreTubesThanColorsAreRefused) { EXPECT_THROW(label_colors(100'000'000), ConfigError); }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::cloud

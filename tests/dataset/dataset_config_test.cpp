@@ -3,9 +3,10 @@
 #include <gmock/gmock.h>
 
 #include "support/program.hpp"
+#include "tubebin/core/version.hpp"
 #include "tubebin/dataset/scene_id.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 using ::testing::AllOf;
@@ -157,4 +158,4 @@ TEST(Shards, TakeEverySceneOnceTogether) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::dataset

@@ -9,7 +9,7 @@
 #include "tubebin/dataset/manifest.hpp"
 #include "tubebin/dataset/scene_id.hpp"
 
-namespace tubebin {
+namespace tubebin::dataset {
 namespace {
 
 constexpr int kScenes = 20'000;
@@ -73,4 +73,4 @@ TEST(ManyScenes, AreAllFoundInTheManifest) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::dataset

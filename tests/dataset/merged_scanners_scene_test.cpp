@@ -8,8 +8,6 @@
 #include "tubebin/scene/scene_json.hpp"
 
 namespace tubebin::testing {
-
-using namespace dataset;
 namespace {
 
 using ::testing::AllOf;

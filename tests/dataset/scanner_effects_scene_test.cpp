@@ -26,7 +26,7 @@ std::string make_scene(const TemporaryFolder& folder, const std::string& name, c
 std::string effects() { return "include: " TUBEBIN_SOURCE_DIR "/config/scanner_zivid_like.yaml\n"; }
 std::string exact() { return "include: " TUBEBIN_SOURCE_DIR "/config/set_a.yaml\n"; }
 
-TEST(scene::ScannerEffects, CleanTwinAndTubesAreThoseOfTheExactDataSet) {
+TEST(ScannerEffects, CleanTwinAndTubesAreThoseOfTheExactDataSet) {
   const TemporaryFolder folder;
   const std::string noisy = make_scene(folder, "noisy", effects()), clean = make_scene(folder, "clean", exact());
   auto files = scene_files(noisy), exact_files = scene_files(clean);
@@ -38,7 +38,7 @@ TEST(scene::ScannerEffects, CleanTwinAndTubesAreThoseOfTheExactDataSet) {
   EXPECT_EQ(run_generate_dataset({"--verify", noisy}).exit_code, 0);
 }
 
-TEST(scene::ScannerEffects, VerifyFindsAPointThatIsNotTheSeeds) {
+TEST(ScannerEffects, VerifyFindsAPointThatIsNotTheSeeds) {
   const TemporaryFolder folder;
   const std::string data = make_scene(folder, "noisy", effects());
   for (const std::string file : {"cloud.pcd", "cloud_clean.pcd"}) {

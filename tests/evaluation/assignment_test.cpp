@@ -12,7 +12,7 @@
 #include "support/commands.hpp"
 #include "tubebin/core/random.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 /// Weights as between segments: most pairs share no point.
@@ -139,4 +139,4 @@ TEST(Assignment, EqualsScipyOnRandomCases) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

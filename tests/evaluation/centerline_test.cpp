@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 /// A straight tube between two points, world frame.
@@ -75,4 +75,4 @@ TEST(Centerline, ATubeUnderAnotherAlongItsWholeLengthIsHidden) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -8,7 +8,7 @@
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/random.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 using ::testing::AllOf;
@@ -192,4 +192,4 @@ TEST(CloudPair, AnEmptyLabelledCloudLabelsNothing) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -4,7 +4,7 @@
 
 #include "tubebin/core/random.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 /// Rows: ground-truth tubes 1, 2, ...; columns: predicted segments 1, 2, ...; the last column is "no
@@ -146,4 +146,4 @@ TEST(Metrics, AnySplitOfTheTubesSumsToTheWhole) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

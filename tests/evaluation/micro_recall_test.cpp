@@ -5,7 +5,7 @@
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/random.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 using ::testing::ElementsAre;
@@ -135,4 +135,4 @@ TEST(Contingency, RefusesColoursThatAreNoSegments) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 constexpr double kRadius = 0.0125;
@@ -59,4 +59,4 @@ TEST(PileStatistics, TableTellsHowManyPublishedPilesAreLikeOurs) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -7,7 +7,7 @@
 #include "tubebin/evaluation/paper_figures.hpp"
 #include "tubebin/results/results_folder.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 using ::testing::AllOf;
@@ -191,4 +191,4 @@ TEST(ScenePicture, ShowsTubesLabelsAndErrors) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

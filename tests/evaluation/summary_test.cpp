@@ -7,7 +7,7 @@
 
 #include "tubebin/core/random.hpp"
 
-namespace tubebin {
+namespace tubebin::evaluation {
 namespace {
 
 /// For many values the percentile bootstrap of the mean approaches mean +- 1.96 s / sqrt(n).
@@ -82,4 +82,4 @@ TEST(Pool, SumsTubesBeforeItDivides) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::evaluation

@@ -7,8 +7,6 @@
 #include "support/program.hpp"
 
 namespace tubebin::testing {
-
-using namespace exports;
 namespace {
 
 using ::testing::HasSubstr;

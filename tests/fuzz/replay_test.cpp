@@ -21,7 +21,7 @@ void replay(const char* target, void (*function)(std::string_view)) {
   EXPECT_GT(inputs, 0);
 }
 
-TEST(FuzzReplay, cloud::Cloud) { replay("cloud", fuzz::cloud); }
+TEST(FuzzReplay, Cloud) { replay("cloud", fuzz::cloud); }
 TEST(FuzzReplay, TubesTxt) { replay("tubes_txt", fuzz::tubes_txt); }
 TEST(FuzzReplay, SceneJson) { replay("scene_json", fuzz::scene_json); }
 TEST(FuzzReplay, ResultIndex) { replay("result_index", fuzz::result_index); }

@@ -9,7 +9,7 @@
 #include "tubebin/core/error.hpp"
 #include "tubebin/dataset/scene_id.hpp"
 
-namespace tubebin {
+namespace tubebin::jobs {
 namespace {
 
 using ::testing::AllOf;
@@ -129,4 +129,4 @@ TEST(Deal, MoreTubesCostMore) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::jobs

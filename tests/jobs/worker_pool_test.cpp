@@ -12,7 +12,7 @@
 #include "support/program.hpp"
 #include "tubebin/core/error.hpp"
 
-namespace tubebin {
+namespace tubebin::jobs {
 namespace {
 
 using ::testing::HasSubstr;
@@ -249,4 +249,4 @@ TEST(WorkerPool, EndsTheRunWhenFinishingFails) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::jobs

@@ -10,7 +10,7 @@
 #include "tubebin/modeling/filtering.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 namespace {
 
 /// A trunk of 0.36 m that lies along x at `y`, with two branches of 0.12 m in the plane of the floor.
@@ -26,7 +26,7 @@ scene::PlacedTube two_branches(double y) {
 
 TEST(Branches, OneTubeIsFoundForEachTree) {
   const scene::Scene scene = scene_of({two_branches(-0.12), two_branches(0.04)});
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   ASSERT_EQ(result.tubes.size(), 2u);
   EXPECT_GE(micro_recall_of(result, cloud), 0.995);
@@ -39,7 +39,7 @@ TEST(Branches, OneTubeIsFoundForEachTree) {
 TEST(Branches, ATrunkThatAnotherTubeHidesStillJoinsItsBranches) {
   const scene::Scene scene = scene_of({two_branches(0.0), two_branches(-0.15),
                                        tube_along({{-0.08, -0.02, 0.05}, {-0.04, 0.03, 0.05}, {0.12, 0.03, 0.05}})});
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   EXPECT_EQ(result.tubes.size(), 3u);
   EXPECT_GE(micro_recall_of(result, cloud), 0.99);
@@ -49,7 +49,7 @@ TEST(Branches, SegmentsOfTreesAreTakenApartAndThoseOfChainsAreNot) {
   for (const bool is_tree : {true, false}) {
     const scene::Scene scene = scene_of(
         {is_tree ? two_branches(0.0) : tube_along({{-0.1, 0, kRadius}, {0, 0, kRadius}, {0.1, 0.05, kRadius}})});
-    const cloud::Cloud cloud = scan(scene).cloud;
+    const cloud::Cloud cloud = scan::scan(scene).cloud;
     const ModelingInput input = input_of(cloud, scene.bin);
     FilteredCloud filtered = filter(input, view_of(input), {}, 1);
     add_normals(filtered, view_of(input), kRadius);
@@ -67,7 +67,7 @@ TEST(Branches, TubesThatHangTogetherByTheirEndsAreTakenApart) {
   const double apart = 2.02 * kRadius;
   const scene::Scene scene = scene_of(
       {tube_along({{-0.10, 0.0, 0.02}, {-0.05, 0.0, 0.15}}), tube_along({{-0.10, apart, 0.02}, {-0.05, apart, 0.15}})});
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   const ModelingInput input = input_of(cloud, scene.bin);
   FilteredCloud filtered = filter(input, view_of(input), {}, 1);
   add_normals(filtered, view_of(input), kRadius);
@@ -90,7 +90,7 @@ TEST(Branches, StartOnASideButNotAtAnEnd) {
 TEST(Branches, AreFoundUnderATubeThatHidesWhereTheyStart) {
   const scene::Scene scene = scene_of({two_branches(-0.17), two_branches(-0.04), two_branches(0.08),
                                        tube_along({{-0.20, -0.02, 0.05}, {0.20, -0.02, 0.05}})});
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   EXPECT_EQ(result.tubes.size(), 4u);
   EXPECT_GE(micro_recall_of(result, cloud), 0.99);
@@ -103,7 +103,7 @@ TEST_P(PublishedSetC, HasATubeForEachTree) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs the published scenes in " PUBLISHED_SCENES_DIR;
   scene::Scene scene = scene_of(scene::read_tubes_txt(path));
   scene.bin = {.length = 0.80, .width = 0.60, .height = 0.20, .wall_thickness = 0.02};
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   EXPECT_LE(static_cast<int>(result.tubes.size()), GetParam() + GetParam() / 5);
   EXPECT_GE(micro_recall_of(result, cloud), 0.95);
@@ -112,4 +112,4 @@ TEST_P(PublishedSetC, HasATubeForEachTree) {
 INSTANTIATE_TEST_SUITE_P(Trees, PublishedSetC, ::testing::Values(5, 10));
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -9,7 +9,7 @@
 #include "tubebin/modeling/pipeline.hpp"
 #include "tubebin/scan/scanner.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 
 constexpr double kRadius = 0.0125;  // metres
 
@@ -78,4 +78,4 @@ inline double farthest_node(const TubeModel& model, const scene::PlacedTube& tub
   return farthest;
 }
 
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -18,7 +18,7 @@
 #include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/tube_model.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 namespace {
 
 /// A scanner a metre above the origin that looks down.
@@ -197,4 +197,4 @@ TEST(SurfaceFitting, GrowsAnEndAsFarAsItsPointsReach) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::modeling

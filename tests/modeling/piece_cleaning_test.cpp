@@ -7,7 +7,7 @@
 
 #include "modeling/built_scene.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 namespace {
 
 constexpr double kRowSpacing = 0.0015;  // metres
@@ -37,4 +37,4 @@ TEST(PieceCleaning, DropsWhatAnotherPieceOfTheSameTubeExplains) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::modeling

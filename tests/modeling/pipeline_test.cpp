@@ -7,7 +7,7 @@
 #include "modeling/built_scene.hpp"
 #include "tubebin/core/error.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 namespace {
 
 constexpr double kR = kRadius;
@@ -69,7 +69,7 @@ class BuiltScene : public ::testing::TestWithParam<Expectation> {};
 
 TEST_P(BuiltScene, TheCenterlineMethodFindsEachTube) {
   const scene::Scene scene = GetParam().build();
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   ASSERT_EQ(result.tubes.size(), scene.tubes.size());
   EXPECT_GE(micro_recall_of(result, cloud), GetParam().centerline_noise_free);
@@ -82,7 +82,7 @@ TEST_P(BuiltScene, TheCenterlineMethodFindsEachTube) {
 
 TEST_P(BuiltScene, NoiseCostsLittle) {
   const scene::Scene scene = GetParam().build();
-  cloud::Cloud cloud = scan(scene).cloud;
+  cloud::Cloud cloud = scan::scan(scene).cloud;
   add_range_noise(cloud, 0.0003, 5);
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   EXPECT_EQ(result.tubes.size(), scene.tubes.size());
@@ -91,7 +91,7 @@ TEST_P(BuiltScene, NoiseCostsLittle) {
 
 TEST_P(BuiltScene, RegionGrowingLabelsMostPoints) {
   const scene::Scene scene = GetParam().build();
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius(ModelingMethod::region_growing));
   EXPECT_GE(micro_recall_of(result, cloud), GetParam().region_growing);
 }
@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, BuiltScene,
 
 TEST(Pipeline, BridgesWhatAnotherTubeHides) {
   const scene::Scene scene = in_two_pieces();
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   ASSERT_EQ(result.tubes.size(), 2u);
   int bridged = 0;
@@ -129,7 +129,7 @@ TEST(Pipeline, ASteepTubeOfFewPointsStaysOne) {
                                                    {0.054, 0.034, 0.0125},
                                                    {0.091, 0.074, 0.0378},
                                                    {0.132, 0.076, 0.045}})});
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   ModelingOptions options = known_radius();
   options.filtering.ratio = 0.3;
   for (options.seed = 1; options.seed <= 60; ++options.seed)
@@ -138,7 +138,7 @@ TEST(Pipeline, ASteepTubeOfFewPointsStaysOne) {
 
 TEST(Pipeline, EstimatesTheRadiusThatNobodyStates) {
   const scene::Scene scene = one_over_three();
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), ModelingOptions{});
   EXPECT_NEAR(result.radius, kR, 0.02 * kR);
   EXPECT_EQ(result.tubes.size(), 4u);
@@ -146,7 +146,7 @@ TEST(Pipeline, EstimatesTheRadiusThatNobodyStates) {
 
 TEST(Pipeline, KeepsTheStatedShareOfThePoints) {
   const scene::Scene scene = crossing();
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   ModelingOptions options = known_radius();
   const std::size_t all = model_tubes(input_of(cloud, scene.bin), options).source.size();
   options.filtering.ratio = 0.3;
@@ -157,7 +157,7 @@ TEST(Pipeline, KeepsTheStatedShareOfThePoints) {
 
 TEST(Pipeline, TheSeedGivesTheSameResultAgain) {
   const scene::Scene scene = one_over_three();
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   for (const ModelingMethod method : {ModelingMethod::centerline, ModelingMethod::region_growing}) {
     ModelingOptions options = known_radius(method);
     options.filtering.ratio = 0.5;
@@ -170,7 +170,7 @@ TEST(Pipeline, TheSeedGivesTheSameResultAgain) {
 
 TEST(Pipeline, TheOrderOfThePointsChangesNoLabel) {
   const scene::Scene scene = one_over_three();
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   std::vector<std::size_t> order(cloud.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   Random random(8);
@@ -191,7 +191,7 @@ TEST(Pipeline, TheOrderOfThePointsChangesNoLabel) {
 
 TEST(Pipeline, ARigidMotionOfTheInputMovesTheResultWithIt) {
   const scene::Scene scene = one_over_three();
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   const Pose motion = make_pose(Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized())), {0.4, -0.2, 0.3});
   cloud::Cloud moved = cloud;
   for (cloud::Point& point : moved.points)
@@ -218,7 +218,7 @@ TEST(Pipeline, ARigidMotionOfTheInputMovesTheResultWithIt) {
 
 TEST(Pipeline, FindsTheTubesInABinThatNobodyDescribes) {
   const scene::Scene scene = one_over_three();
-  const cloud::Cloud cloud = scan(scene).cloud;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
   ModelingInput input = input_of(cloud, scene.bin);
   input.bin.reset();
   const ModelingResult result = model_tubes(input, known_radius());
@@ -246,4 +246,4 @@ TEST(Pipeline, ACloudWithoutAPointInTheBinIsRefused) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::modeling

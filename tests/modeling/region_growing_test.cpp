@@ -9,7 +9,7 @@
 #include "modeling/built_scene.hpp"
 #include "tubebin/modeling/greedy_joining.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 namespace {
 
 /// The upper half of a tube's surface, sampled every 1.5 mm, without the joints' spheres.
@@ -58,4 +58,4 @@ TEST(GreedyJoining, WhatIsShorterThanItIsWideIsATubeOnlyAsPartOfOne) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -8,7 +8,7 @@
 #include "tubebin/core/random.hpp"
 #include "tubebin/modeling/filtering.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 namespace {
 
 using Exclusions = std::vector<std::vector<std::uint32_t>>;  // of each place
@@ -164,4 +164,4 @@ TEST(Filtering, CropsFloorAndWalls) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::modeling

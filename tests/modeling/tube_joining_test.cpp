@@ -8,7 +8,7 @@
 #include "modeling/built_scene.hpp"
 #include "modeling/joining/occlusion.hpp"
 
-namespace tubebin {
+namespace tubebin::modeling {
 namespace {
 
 constexpr double kSheetSpacing = 0.004;  // metres, of a built cloud's points
@@ -95,9 +95,9 @@ TEST_F(TubeJoining, EndsThatPassEachOtherAreOneTubes) {
   EXPECT_GT(cost(2.0 * kRadius, 1.2 * kRadius), 0.0);  // side by side
 }
 
-TEST(scene::Occlusion, SeesTubesThatHangOverTheWall) {
+TEST(Occlusion, SeesTubesThatHangOverTheWall) {
   const scene::Scene scene = scene_of({tube_along({{0, 0, 0.22}, {0, 0.4, 0.22}})});
-  const scan::Scan view = scan(scene, 1);
+  const scan::Scan view = scan::scan(scene, 1);
   const OcclusionTest occlusion(input_of(view.cloud, scene.bin), {view.cloud.world_from_sensor, cloud::Point::Zero()},
                                 0.001, kRadius);
   ASSERT_GT(0.3, scene.bin.width / 2.0 + scene.bin.wall_thickness);
@@ -105,7 +105,7 @@ TEST(scene::Occlusion, SeesTubesThatHangOverTheWall) {
   EXPECT_EQ(occlusion.around({0.05, 0.3, 0.22}, Vec3::UnitY()).empty, 1.0);
 }
 
-TEST(scene::Occlusion, LeavesOutWhatIsNotFiniteInAnyCoordinate) {
+TEST(Occlusion, LeavesOutWhatIsNotFiniteInAnyCoordinate) {
   std::vector<cloud::Point> points;
   add_sheet({0, 0, 0}, 0.1, points);
   for (int axis = 0; axis < 3; ++axis) {
@@ -120,4 +120,4 @@ TEST(scene::Occlusion, LeavesOutWhatIsNotFiniteInAnyCoordinate) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::modeling

@@ -6,7 +6,7 @@
 
 #include "tubebin/tube/tube_generator.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 /// Signed distance to a solid cylinder with flat ends (exact outside and inside).
@@ -247,4 +247,4 @@ TEST(Collision, ATubeOnTheWallsRimIsHeldByItsEdge) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::physics

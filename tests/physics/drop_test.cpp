@@ -9,7 +9,7 @@
 #include "tubebin/physics/drop_simulator.hpp"
 #include "tubebin/tube/tube_generator.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 tube::Tube straight_tube(double length) {
@@ -181,4 +181,4 @@ TEST(RestCheck, FindsTheTubeThatNothingHolds) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::physics

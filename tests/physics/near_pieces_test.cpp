@@ -4,7 +4,7 @@
 
 #include "tubebin/tube/tube_generator.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 /// Tubes that wander by steps of all sizes, some smaller and some larger than what makes a list anew.
@@ -46,4 +46,4 @@ TEST(NearPieces, MissNoTouchWhileTubesMove) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::physics

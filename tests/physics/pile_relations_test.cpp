@@ -11,7 +11,7 @@
 #include "tubebin/scene/tubes_txt.hpp"
 #include "tubebin/tube/tube_generator.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 using ::testing::ElementsAre;
@@ -57,7 +57,7 @@ int expect_agreement_with_lifting(const std::vector<scene::PlacedTube>& tubes) {
   return pairs;
 }
 
-TEST(scene::PileRelations, ACrossIsLiftedFromAbove) {
+TEST(PileRelations, ACrossIsLiftedFromAbove) {
   const std::vector<scene::PlacedTube> tubes = {bar({-0.2, 0, 0.02}, {0.2, 0, 0.02}),
                                                 bar({0, -0.1, 0.06}, {0, 0.1, 0.06})};
   EXPECT_THAT(scene::find_above(tubes), ElementsAre(scene::Above{2, 1}));
@@ -68,7 +68,7 @@ TEST(scene::PileRelations, ACrossIsLiftedFromAbove) {
   EXPECT_THAT(scene::entangled_groups(2, scene::find_above(tubes)), IsEmpty());
 }
 
-TEST(scene::PileRelations, TubesSideBySideAreNotAboveEachOther) {
+TEST(PileRelations, TubesSideBySideAreNotAboveEachOther) {
   EXPECT_THAT(
       scene::find_above({bar({-0.2, 0, 0.0125}, {0.2, 0, 0.0125}), bar({-0.2, 0.0245, 0.013}, {0.2, 0.0245, 0.013})}),
       IsEmpty());
@@ -77,7 +77,7 @@ TEST(scene::PileRelations, TubesSideBySideAreNotAboveEachOther) {
       ElementsAre(scene::Above{2, 1}));
 }
 
-TEST(scene::PileRelations, EndsAreFlat) {
+TEST(PileRelations, EndsAreFlat) {
   // The upper tube's flat end stops 1 mm before the lower tube; a rounded one would reach over it.
   EXPECT_THAT(scene::find_above({bar({0, -0.1, 0.02}, {0, 0.1, 0.02}), bar({0.0135, 0, 0.1}, {0.2, 0, 0.1})}),
               IsEmpty());
@@ -85,13 +85,13 @@ TEST(scene::PileRelations, EndsAreFlat) {
               ElementsAre(scene::Above{2, 1}));
 }
 
-TEST(scene::PileRelations, AnUprightTubeAndABallAreSolidsToo) {
+TEST(PileRelations, AnUprightTubeAndABallAreSolidsToo) {
   const scene::PlacedTube ball{{.radius = 0.02, .nodes = {{0, 0, 0.3}}, .cylinders = {}}, Pose::Identity()};
   EXPECT_THAT(scene::find_above({bar({0, 0, 0}, {0, 0, 0.2}), ball}), ElementsAre(scene::Above{2, 1}));
   EXPECT_THAT(scene::find_above({bar({0.0330, 0, 0}, {0.0330, 0, 0.2}), ball}), IsEmpty());
 }
 
-TEST(scene::PileRelations, HookedTubesAreAGroupAndTheOneOnTopIsNot) {
+TEST(PileRelations, HookedTubesAreAGroupAndTheOneOnTopIsNot) {
   // Two staples, one through the other: each passes over and under the other.
   const scene::PlacedTube first = polyline({{-0.2, 0.0, 0.02}, {0.0, 0.0, 0.1}, {0.2, 0.0, 0.02}});
   const scene::PlacedTube second =
@@ -102,14 +102,14 @@ TEST(scene::PileRelations, HookedTubesAreAGroupAndTheOneOnTopIsNot) {
   EXPECT_THAT(scene::entangled_groups(3, above), ElementsAre(ElementsAre(1U, 2U)));
 }
 
-TEST(scene::PileRelations, GroupsAreTheCyclesOfAbove) {
+TEST(PileRelations, GroupsAreTheCyclesOfAbove) {
   EXPECT_THAT(scene::entangled_groups(6, {{1, 2}, {2, 3}, {3, 1}, {4, 1}, {5, 6}, {6, 5}}),
               ElementsAre(ElementsAre(1U, 2U, 3U), ElementsAre(5U, 6U)));
   EXPECT_THAT(scene::entangled_groups(3, {{1, 2}, {2, 3}, {1, 3}}), IsEmpty());
   EXPECT_THAT(scene::entangled_groups(0, {}), IsEmpty());
 }
 
-TEST(scene::PileRelations, AgreesWithLiftingADroppedPile) {
+TEST(PileRelations, AgreesWithLiftingADroppedPile) {
   Random random(77);
   tube::TubeOptions options;
   options.bend_angle_max_deg = 45.0;
@@ -123,7 +123,7 @@ TEST(scene::PileRelations, AgreesWithLiftingADroppedPile) {
   EXPECT_GT(expect_agreement_with_lifting(drop.tubes), 3);
 }
 
-TEST(scene::PileRelations, AgreesWithLiftingPublishedPiles) {
+TEST(PileRelations, AgreesWithLiftingPublishedPiles) {
   for (const char* name : {"A5_1", "B10_1", "C5_1"}) {
     const std::string path = std::string(PUBLISHED_SCENES_DIR "/") + name + ".txt";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs the published scenes in " PUBLISHED_SCENES_DIR;
@@ -132,7 +132,7 @@ TEST(scene::PileRelations, AgreesWithLiftingPublishedPiles) {
   }
 }
 
-TEST(scene::PileRelations, CenterlinesFollowTheGraph) {
+TEST(PileRelations, CenterlinesFollowTheGraph) {
   EXPECT_THAT(scene::centerline_paths(polyline({{0, 0, 0}, {1, 0, 0}, {2, 1, 0}}).tube),
               ElementsAre(ElementsAre(0, 1, 2)));
   tube::Tube tube{.radius = 0.01,
@@ -149,4 +149,4 @@ TEST(scene::PileRelations, CenterlinesFollowTheGraph) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::physics

@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 using Motion = std::function<Vec3(int step)>;
@@ -78,4 +78,4 @@ TEST(RestProof, WithoutACheckASlowPileIsAtRest) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::physics

@@ -5,7 +5,7 @@
 #include "physics/rest_proof.hpp"
 #include "physics/rigid_world.hpp"
 
-namespace tubebin {
+namespace tubebin::physics {
 namespace {
 
 constexpr double kReach = 0.006;
@@ -114,4 +114,4 @@ TEST(WarmStart, AStackCreepsLess) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::physics

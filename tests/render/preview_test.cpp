@@ -12,7 +12,7 @@
 #include "tubebin/core/error.hpp"
 #include "tubebin/scan/scanner.hpp"
 
-namespace tubebin {
+namespace tubebin::render {
 namespace {
 
 class Preview : public ::testing::Test {
@@ -25,7 +25,7 @@ class Preview : public ::testing::Test {
 /// The drawn labels and the scanned ones: at least 99.5 % of the pixels are the same, and where they are not,
 /// one of the eight pixels around has another scanned label.
 void expect_labels_agree(const scene::Scene& scene) {
-  const scan::Scan scanned = scan(scene);
+  const scan::Scan scanned = scan::scan(scene);
   const Image drawn = render_labels(scene, scanned.window);
   ASSERT_EQ(drawn.width, scanned.window.width);
   ASSERT_EQ(drawn.height, scanned.window.height);
@@ -149,15 +149,5 @@ TEST(Png, ReadsBackTheSame) {
   EXPECT_EQ(rgb, image.rgb);
 }
 
-TEST(Png, UnwritableFileIsNamed) {
-  const Image image{1, 1, {1, 2, 3}};
-  try {
-    write_png("/no/such/folder/picture.png", image);
-    FAIL() << "written";
-  } catch (const IoError& error) {
-    EXPECT_THAT(std::string(error.what()), ::testing::HasSubstr("/no/such/folder"));
-  }
-}
-
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::render

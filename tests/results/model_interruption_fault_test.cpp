@@ -10,8 +10,6 @@
 #include "support/faults.hpp"
 
 namespace tubebin::testing {
-
-using namespace results;
 namespace {
 
 using ::testing::AllOf;

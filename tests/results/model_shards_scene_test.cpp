@@ -6,8 +6,6 @@
 #include "tubebin/scene/dataset_files.hpp"
 
 namespace tubebin::testing {
-
-using namespace results;
 namespace {
 
 using ::testing::AllOf;

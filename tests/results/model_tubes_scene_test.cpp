@@ -40,7 +40,7 @@ class ModelTubes : public ::testing::Test {
 
 TEST_F(ModelTubes, WritesBothCloudsAndTheModelOfOne) {
   const std::string out = folder_ / "out";
-  const ProgramResult result = modeling::model_tubes({kScene + "/cloud.pcd", "--output", out, "--ratio", "0.3"});
+  const ProgramResult result = model_tubes({kScene + "/cloud.pcd", "--output", out, "--ratio", "0.3"});
   ASSERT_EQ(result.exit_code, 0) << result.error;
   EXPECT_THAT(result.out, HasSubstr("10 tubes"));
   const cloud::Cloud filtered = cloud::read_cloud(out + "/filtered.pcd"),
@@ -89,7 +89,7 @@ TEST_F(ModelTubes, ADataSetGivesTheSameBytesWhateverTheJobs) {
     std::vector<std::string> arguments = {dataset, "--output", out};
     arguments.insert(arguments.end(), rest.begin(), rest.end());
     arguments.push_back(jobs);
-    const ProgramResult result = modeling::model_tubes(arguments);
+    const ProgramResult result = model_tubes(arguments);
     ASSERT_EQ(result.exit_code, 0) << result.error;
   }
   for (const char* run : {"A10/001/centerline_0.1", "A10/001/centerline_0.3", "A10/002/centerline_0.1"})
@@ -105,12 +105,12 @@ TEST_F(ModelTubes, ADataSetGivesTheSameBytesWhateverTheJobs) {
 TEST_F(ModelTubes, GoesOnWhereItStoppedAndRefusesOtherOptions) {
   const std::string dataset = make_dataset({"A10/001"});
   const std::string out = folder_ / "out";
-  ASSERT_EQ(modeling::model_tubes({dataset, "--output", out, "--ratios", "0.1", "--quiet"}).exit_code, 0);
-  const ProgramResult more = modeling::model_tubes({dataset, "--output", out, "--ratios", "0.1,0.2", "--quiet"});
+  ASSERT_EQ(model_tubes({dataset, "--output", out, "--ratios", "0.1", "--quiet"}).exit_code, 0);
+  const ProgramResult more = model_tubes({dataset, "--output", out, "--ratios", "0.1,0.2", "--quiet"});
   EXPECT_EQ(more.exit_code, 0) << more.error;
   EXPECT_THAT(more.out, HasSubstr("1 there before"));
   const ProgramResult other =
-      modeling::model_tubes({dataset, "--output", out, "--ratios", "0.1", "--seed", "9", "--quiet"});
+      model_tubes({dataset, "--output", out, "--ratios", "0.1", "--seed", "9", "--quiet"});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.error, HasSubstr("seed"));
 }
@@ -119,7 +119,7 @@ TEST_F(ModelTubes, ABadCloudIsReportedAndTheOthersAreDone) {
   const std::string dataset = make_dataset({"A10/001", "A10/002"});
   write_text(dataset + "/A10/001/cloud.pcd", "no cloud");
   const std::string out = folder_ / "out";
-  const ProgramResult result = modeling::model_tubes({dataset, "--output", out, "--ratios", "0.1", "--quiet"});
+  const ProgramResult result = model_tubes({dataset, "--output", out, "--ratios", "0.1", "--quiet"});
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.error, HasSubstr("A10/001"));
   EXPECT_TRUE(fs::exists(out + "/A10/002/centerline_0.1/result.json"));
@@ -142,17 +142,17 @@ TEST_F(ModelTubes, NamesWhatIsWrongWithAFile) {
       {"truncated.pcd", read_text(kScene + "/cloud.pcd").substr(0, 5000)}};
   for (const auto& [name, text] : files) {
     write_text(folder_ / name, text);
-    const ProgramResult result = modeling::model_tubes({folder_ / name, "--output", folder_ / "out"});
+    const ProgramResult result = model_tubes({folder_ / name, "--output", folder_ / "out"});
     EXPECT_EQ(result.exit_code, 1) << name;
     EXPECT_THAT(result.error, HasSubstr(name));
   }
-  const ProgramResult missing = modeling::model_tubes({folder_ / "missing.pcd", "--output", folder_ / "out"});
+  const ProgramResult missing = model_tubes({folder_ / "missing.pcd", "--output", folder_ / "out"});
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_THAT(missing.error, HasSubstr("missing.pcd"));
 
   const std::string dataset = make_dataset({"A10/001"});
   write_text(dataset + "/A10/001/scene.json", "{");
-  const ProgramResult scene = modeling::model_tubes({dataset + "/A10/001/cloud.pcd", "--output", folder_ / "out"});
+  const ProgramResult scene = model_tubes({dataset + "/A10/001/cloud.pcd", "--output", folder_ / "out"});
   EXPECT_EQ(scene.exit_code, 1);
   EXPECT_THAT(scene.error, HasSubstr("scene.json"));
 }
@@ -165,7 +165,7 @@ TEST_F(ModelTubes, RefusesOptionsThatCannotBeMeant) {
       {cloud, "--output", out, "--ratios", "0.5"},  {cloud, "--output", out, "--config", folder_ / "none.yaml"},
       {kScene, "--output", out, "--ratios", "2:1"}, {cloud}};
   for (const auto& arguments : wrong) {
-    const ProgramResult result = modeling::model_tubes(arguments);
+    const ProgramResult result = model_tubes(arguments);
     EXPECT_EQ(result.exit_code, 2) << arguments.back();
     EXPECT_FALSE(result.error.empty());
   }

@@ -6,7 +6,7 @@
 #include "tubebin/core/error.hpp"
 #include "tubebin/evaluation/result_tables.hpp"
 
-namespace tubebin {
+namespace tubebin::results {
 namespace {
 
 using ::testing::AllOf;
@@ -172,4 +172,4 @@ TEST(SceneName, TellsSetTubesAndCase) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::results

@@ -5,7 +5,7 @@
 #include "scan/signed_distance.hpp"
 #include "tubebin/core/random.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 using testing::box_distance;
@@ -124,4 +124,4 @@ TEST(ExactShapes, BoundsTouchTheSurfaceOnEverySide) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::scan

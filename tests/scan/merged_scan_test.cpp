@@ -10,7 +10,7 @@
 #include "tubebin/scan/visibility.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 using testing::look_closely;
@@ -127,4 +127,4 @@ TEST(MergedScan, CountsPixelsOfAllScanners) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -8,7 +8,7 @@
 #include "scan/ray_caster.hpp"
 #include "scan/view_window.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 constexpr double kDepthMin = 0.1;  // metres
@@ -104,4 +104,4 @@ TEST(RayCaster, FindsTheSameByTreeAsOneByOneAndRayByRay) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::scan

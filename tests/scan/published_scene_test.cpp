@@ -9,7 +9,7 @@
 #include "tubebin/scene/camera.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 class PublishedScene : public ::testing::TestWithParam<const char*> {
@@ -71,4 +71,4 @@ INSTANTIATE_TEST_SUITE_P(All, PublishedScene,
                                            "B10_2", "B20_1", "C5_1", "C10_1"));
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -7,8 +7,6 @@
 
 namespace tubebin::testing {
 
-using namespace scan;
-
 inline scene::Scene random_scene(int tube_count, std::uint64_t seed) {
   Random random(seed);
   scene::Scene scene;

@@ -4,7 +4,7 @@
 
 #include "tubebin/core/random.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 /// One ray at a time, by the intervals of the solids.
@@ -96,4 +96,4 @@ TEST(RayPacket, MarksLanesThatBeginInsideOrEnterABore) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::scan

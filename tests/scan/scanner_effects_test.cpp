@@ -9,7 +9,7 @@
 #include "tubebin/scan/scanner.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 using testing::look_closely;
@@ -35,7 +35,7 @@ double depth_of(const scene::Scene& scene, const cloud::Point& point) {
 
 /// Depths minus those of the noise-free twin, of pixels that have both.
 std::vector<double> depth_errors(const scene::Scene& scene, std::uint64_t seed) {
-  const cloud::Cloud measured = scan(scene, seed).cloud, exact = scan_exactly(scene).cloud;
+  const cloud::Cloud measured = scan(scene, seed).cloud, exact = scan_exactly_from_all(scene).cloud;
   std::vector<double> errors;
   for (std::size_t i = 0; i < exact.size(); ++i)
     if (cloud::is_finite(measured.points[i]) && cloud::is_finite(exact.points[i]))
@@ -75,21 +75,21 @@ scene::ScannerEffects all_effects() {
   return effects;
 }
 
-TEST(scene::ScannerEffects, AllOffIsTheExactScanWhateverTheSeed) {
+TEST(ScannerEffects, AllOffIsTheExactScanWhateverTheSeed) {
   const scene::Scene scene = random_scene(8, 1);
   EXPECT_FALSE(scene.scanner.effects.any());
   EXPECT_TRUE(same_bytes(scan(scene, 1).cloud, scan(scene, 2).cloud));
   scene::Scene noisy = scene;
   noisy.scanner.effects = all_effects();
-  EXPECT_TRUE(same_bytes(scan_exactly(noisy).cloud, scan(scene).cloud));
+  EXPECT_TRUE(same_bytes(scan_exactly_from_all(noisy).cloud, scan(scene).cloud));
 }
 
 /// With an effect too small to change a float the measuring path gives what the exact one does.
-TEST(scene::ScannerEffects, TheMeasuringPathIsTheExactOneInTheLimit) {
+TEST(ScannerEffects, TheMeasuringPathIsTheExactOneInTheLimit) {
   scene::Scene scene = random_scene(8, 2);
   look_closely(scene.scanner, 240, 150);
   scene.scanner.effects.range_noise.sigma = 1e-15;
-  const cloud::Cloud measured = scan(scene, 5).cloud, exact = scan_exactly(scene).cloud;
+  const cloud::Cloud measured = scan(scene, 5).cloud, exact = scan_exactly_from_all(scene).cloud;
   ASSERT_EQ(measured.labels, exact.labels);
   for (std::size_t i = 0; i < exact.size(); ++i) {
     ASSERT_EQ(cloud::is_finite(measured.points[i]), cloud::is_finite(exact.points[i]));
@@ -99,7 +99,7 @@ TEST(scene::ScannerEffects, TheMeasuringPathIsTheExactOneInTheLimit) {
   }
 }
 
-TEST(scene::ScannerEffects, SeedDecidesAllAndRegionsAgree) {
+TEST(ScannerEffects, SeedDecidesAllAndRegionsAgree) {
   scene::Scene scene = random_scene(6, 3);
   look_closely(scene.scanner, 240, 150);
   scene.scanner.effects = all_effects();
@@ -123,7 +123,7 @@ TEST(scene::ScannerEffects, SeedDecidesAllAndRegionsAgree) {
   for (std::size_t k = 1; k < counts.size(); ++k) EXPECT_EQ(counts[k], bin.tube_pixels[k - 1]);
 }
 
-TEST(scene::ScannerEffects, RangeNoiseGrowsWithTheSquareOfTheDepth) {
+TEST(ScannerEffects, RangeNoiseGrowsWithTheSquareOfTheDepth) {
   for (const double distance : {0.5, 1.0, 2.0, 4.0}) {
     scene::Scene scene = floor_scene(distance);
     scene.scanner.effects.range_noise.sigma = 1e-3;
@@ -134,7 +134,7 @@ TEST(scene::ScannerEffects, RangeNoiseGrowsWithTheSquareOfTheDepth) {
   }
 }
 
-TEST(scene::ScannerEffects, RangeNoiseGrowsWithTheIncidenceAngle) {
+TEST(ScannerEffects, RangeNoiseGrowsWithTheIncidenceAngle) {
   for (const double angle_deg : {30.0, 60.0, 75.0}) {
     scene::Scene scene = floor_scene(1.0);
     scene.scanner.horizontal_fov_deg = 0.2;
@@ -148,7 +148,7 @@ TEST(scene::ScannerEffects, RangeNoiseGrowsWithTheIncidenceAngle) {
   }
 }
 
-TEST(scene::ScannerEffects, RangeNoiseIsCorrelatedBetweenNeighbours) {
+TEST(ScannerEffects, RangeNoiseIsCorrelatedBetweenNeighbours) {
   constexpr double kLength = 3.0;
   scene::Scene scene = floor_scene(1.0);
   scene.scanner.effects.range_noise.sigma = 1e-3;
@@ -173,7 +173,7 @@ TEST(scene::ScannerEffects, RangeNoiseIsCorrelatedBetweenNeighbours) {
 }
 
 /// On a plane that the view meets at an angle, looking beside the pixel changes the depth by its slope.
-TEST(scene::ScannerEffects, LateralNoiseMovesWhereAPixelLooks) {
+TEST(ScannerEffects, LateralNoiseMovesWhereAPixelLooks) {
   scene::Scene scene = floor_scene(1.0);
   scene.scanner.horizontal_fov_deg = 1.0;
   scene.scanner.rotation_deg.y() = 45.0;
@@ -183,7 +183,7 @@ TEST(scene::ScannerEffects, LateralNoiseMovesWhereAPixelLooks) {
   EXPECT_NEAR(standard_deviation(depth_errors(scene, 14)), expected, 0.03 * expected);
 }
 
-TEST(scene::ScannerEffects, QuantizationStepIsEvenInDisparity) {
+TEST(ScannerEffects, QuantizationStepIsEvenInDisparity) {
   scene::Scene scene = random_scene(5, 4);
   look_closely(scene.scanner, 240, 150);
   scene.scanner.effects.reference_distance = 1.5;
@@ -201,13 +201,13 @@ TEST(scene::ScannerEffects, QuantizationStepIsEvenInDisparity) {
 }
 
 /// Lit by brute force: a sphere tracing scanner at the projector looks at every point.
-TEST(scene::ScannerEffects, ShadowIsWhereTheProjectorSeesSomethingElse) {
+TEST(ScannerEffects, ShadowIsWhereTheProjectorSeesSomethingElse) {
   scene::Scene scene = random_scene(8, 5);
   look_closely(scene.scanner, 160, 100);
   scene.scanner.rotation_deg = {3.0, -4.0, 20.0};
   scene::ProjectorOptions& projector = scene.scanner.effects.projector;
   projector = {.enabled = true, .position = {0.6, 0.1, 0.05}, .horizontal_fov_deg = 12.0, .vertical_fov_deg = 8.0};
-  const cloud::Cloud lit = scan(scene, 16).cloud, exact = scan_exactly(scene).cloud;
+  const cloud::Cloud lit = scan(scene, 16).cloud, exact = scan_exactly_from_all(scene).cloud;
   scene::Scene from_projector = scene;
   from_projector.scanner.position = scene.scanner.world_from_scanner() * projector.position;
   const Vec3 focus = scene.scanner.world_from_scanner() * Vec3(0, 0, projector.focus_distance);
@@ -239,7 +239,7 @@ TEST(scene::ScannerEffects, ShadowIsWhereTheProjectorSeesSomethingElse) {
   EXPECT_LE(wrong, 3);
 }
 
-TEST(scene::ScannerEffects, DropOutsFollowTheSignal) {
+TEST(ScannerEffects, DropOutsFollowTheSignal) {
   for (const double threshold : {0.2, 0.25, 0.3}) {
     scene::Scene scene = floor_scene(2.0);
     scene.scanner.effects.dropouts = {.signal_min = threshold, .signal_spread = 0.3, .bin_reflectivity = 0.9};
@@ -250,7 +250,7 @@ TEST(scene::ScannerEffects, DropOutsFollowTheSignal) {
   }
 }
 
-TEST(scene::ScannerEffects, GrazingSurfacesDropOutSharplyWithoutSpread) {
+TEST(ScannerEffects, GrazingSurfacesDropOutSharplyWithoutSpread) {
   scene::Scene scene = floor_scene(1.0);
   scene.scanner.horizontal_fov_deg = 0.2;
   scene.scanner.effects.dropouts.signal_min = 0.1;
@@ -261,7 +261,7 @@ TEST(scene::ScannerEffects, GrazingSurfacesDropOutSharplyWithoutSpread) {
   }
 }
 
-TEST(scene::ScannerEffects, GlareIsADiscAroundTheMirrorDirection) {
+TEST(ScannerEffects, GlareIsADiscAroundTheMirrorDirection) {
   scene::Scene scene = floor_scene(2.0);
   scene.scanner.horizontal_fov_deg = 10.0;
   scene.scanner.effects.dropouts.bin_glare_angle_deg = 2.0;
@@ -272,12 +272,12 @@ TEST(scene::ScannerEffects, GlareIsADiscAroundTheMirrorDirection) {
 }
 
 /// A point at an edge lies between the surfaces that its footprint sees, and elsewhere on its surface.
-TEST(scene::ScannerEffects, MixedPixelsLieBetweenTheSurfacesOfTheirFootprint) {
+TEST(ScannerEffects, MixedPixelsLieBetweenTheSurfacesOfTheirFootprint) {
   scene::Scene scene = random_scene(8, 6);
   look_closely(scene.scanner, 120, 76);
   scene.scanner.region = scene::ScanRegion::full;
   scene.scanner.effects.mixed_pixels = {.share = 1.0, .footprint = 1.0, .edge_step = 0.01};
-  const cloud::Cloud mixed = scan(scene, 20).cloud, exact = scan_exactly(scene).cloud;
+  const cloud::Cloud mixed = scan(scene, 20).cloud, exact = scan_exactly_from_all(scene).cloud;
   const scene::Camera camera(scene.scanner);
   const SphereTracer tracer(scene);
   int between = 0, wrong = 0;
@@ -307,7 +307,7 @@ TEST(scene::ScannerEffects, MixedPixelsLieBetweenTheSurfacesOfTheirFootprint) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(scene::ScannerEffects, OutliersAreAsManyAndAsFarAsAsked) {
+TEST(ScannerEffects, OutliersAreAsManyAndAsFarAsAsked) {
   scene::Scene scene = floor_scene(1.0);
   scene.scanner.effects.outliers = {.share = 0.1, .spread = 0.05};
   std::vector<double> off;
@@ -318,11 +318,11 @@ TEST(scene::ScannerEffects, OutliersAreAsManyAndAsFarAsAsked) {
   for (const double error : off) ASSERT_LE(std::abs(error), 0.05 + 1e-6);
 }
 
-TEST(scene::ScannerEffects, CalibrationErrorIsOneAffineMapOfTheExactCloud) {
+TEST(ScannerEffects, CalibrationErrorIsOneAffineMapOfTheExactCloud) {
   scene::Scene scene = random_scene(5, 7);
   look_closely(scene.scanner, 120, 76);
   scene.scanner.effects.calibration = {.position = {0.002, -0.001, 0.003}, .rotation_deg = {0, 0, 0.5}, .focal = 0.01};
-  const cloud::Cloud off = scan(scene, 22).cloud, exact = scan_exactly(scene).cloud;
+  const cloud::Cloud off = scan(scene, 22).cloud, exact = scan_exactly_from_all(scene).cloud;
   const Pose world_from_scanner = scene.scanner.world_from_scanner();
   const double c = std::cos(radians(0.5)), s = std::sin(radians(0.5));
   for (std::size_t i = 0; i < exact.size(); ++i) {
@@ -335,4 +335,4 @@ TEST(scene::ScannerEffects, CalibrationErrorIsOneAffineMapOfTheExactCloud) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::scan

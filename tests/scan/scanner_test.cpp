@@ -9,7 +9,7 @@
 #include "tubebin/cloud/label_colors.hpp"
 #include "tubebin/scene/camera.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 using testing::look_closely;
@@ -39,7 +39,7 @@ int expect_agreement_with_sphere_tracing(scene::Scene scene) {
   return hits;
 }
 
-TEST(scene::Scanner, AgreesWithSphereTracingInRandomScenes) {
+TEST(Scanner, AgreesWithSphereTracingInRandomScenes) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     scene::Scene scene = random_scene(8, seed);
     look_closely(scene.scanner, 120, 76);
@@ -47,7 +47,7 @@ TEST(scene::Scanner, AgreesWithSphereTracingInRandomScenes) {
   }
 }
 
-TEST(scene::Scanner, AgreesWithSphereTracingWhenTiltedAndTurned) {
+TEST(Scanner, AgreesWithSphereTracingWhenTiltedAndTurned) {
   scene::Scene scene = random_scene(8, 4);
   look_closely(scene.scanner, 120, 76);
   scene.scanner.position = {1.0, -0.15, 1.2};
@@ -55,7 +55,7 @@ TEST(scene::Scanner, AgreesWithSphereTracingWhenTiltedAndTurned) {
   EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 1000);
 }
 
-TEST(scene::Scanner, AgreesWithSphereTracingAmongTheTubes) {
+TEST(Scanner, AgreesWithSphereTracingAmongTheTubes) {
   scene::Scene scene = random_scene(12, 5);
   look_closely(scene.scanner, 120, 76);
   scene.scanner.horizontal_fov_deg = 120.0;
@@ -65,7 +65,7 @@ TEST(scene::Scanner, AgreesWithSphereTracingAmongTheTubes) {
   EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 4000);
 }
 
-TEST(scene::Scanner, LooksIntoTheOpenEndsOfHollowTubes) {
+TEST(Scanner, LooksIntoTheOpenEndsOfHollowTubes) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     scene::Scene scene = random_scene(5, seed);
     for (scene::PlacedTube& placed : scene.tubes) placed.tube.wall_thickness = 0.002;
@@ -81,7 +81,7 @@ TEST(scene::Scanner, LooksIntoTheOpenEndsOfHollowTubes) {
   }
 }
 
-TEST(scene::Scanner, RadiusVariesAlongTubes) {
+TEST(Scanner, RadiusVariesAlongTubes) {
   for (const double wall : {0.0, 0.001}) {
     scene::Scene scene = random_scene(6, 14);
     Random random(3);
@@ -94,7 +94,7 @@ TEST(scene::Scanner, RadiusVariesAlongTubes) {
   }
 }
 
-TEST(scene::Scanner, HollowTubesAreOpenOnlyAtTheirEnds) {
+TEST(Scanner, HollowTubesAreOpenOnlyAtTheirEnds) {
   scene::Scene hollow = random_scene(8, 7);
   look_closely(hollow.scanner, 480, 304);
   const scene::Scene solid = hollow;
@@ -116,7 +116,7 @@ TEST(scene::Scanner, HollowTubesAreOpenOnlyAtTheirEnds) {
   EXPECT_GT(deeper, 100u);
 }
 
-TEST(scene::Scanner, SeesTheInnerSurfaceFromInsideATube) {
+TEST(Scanner, SeesTheInnerSurfaceFromInsideATube) {
   scene::Scene scene = random_scene(3, 6);
   look_closely(scene.scanner, 60, 40);
   scene.scanner.horizontal_fov_deg = 100.0;
@@ -130,7 +130,7 @@ TEST(scene::Scanner, SeesTheInnerSurfaceFromInsideATube) {
   EXPECT_EQ(inside.tube_pixels[0], 60u * 40u);
 }
 
-TEST(scene::Scanner, SeesTheBinsOuterSurfaceFromInsideAWall) {
+TEST(Scanner, SeesTheBinsOuterSurfaceFromInsideAWall) {
   scene::Scene scene;
   look_closely(scene.scanner, 60, 40);
   scene.scanner.position = {scene.bin.length / 2 + scene.bin.wall_thickness / 2, 0.0, 0.1};
@@ -141,14 +141,14 @@ TEST(scene::Scanner, SeesTheBinsOuterSurfaceFromInsideAWall) {
   EXPECT_LT(worst_surface_distance(scene, down.cloud), kSurfaceTolerance);
 }
 
-TEST(scene::Scanner, NearPlaneOpensWhatReachesThroughIt) {
+TEST(Scanner, NearPlaneOpensWhatReachesThroughIt) {
   scene::Scene scene = random_scene(8, 9);
   look_closely(scene.scanner, 120, 76);
   scene.scanner.range_min = 1.87;  // 0.13 m above the floor
   EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 2000);
 }
 
-TEST(scene::Scanner, RangeIsInclusiveAndAlongTheOpticalAxis) {
+TEST(Scanner, RangeIsInclusiveAndAlongTheOpticalAxis) {
   scene::Scene scene;
   scene.scanner.range_max = 2.0;  // the floor, exactly, also in the corners of the image
   const Scan whole = scan(scene);
@@ -165,7 +165,7 @@ TEST(scene::Scanner, RangeIsInclusiveAndAlongTheOpticalAxis) {
   }
 }
 
-TEST(scene::Scanner, FloorAtTheRangesEndSurvivesEveryTurnAboutTheAxis) {
+TEST(Scanner, FloorAtTheRangesEndSurvivesEveryTurnAboutTheAxis) {
   scene::Scene scene;
   look_closely(scene.scanner, 60, 40);
   scene.scanner.range_max = 2.0;
@@ -177,7 +177,7 @@ TEST(scene::Scanner, FloorAtTheRangesEndSurvivesEveryTurnAboutTheAxis) {
   }
 }
 
-TEST(scene::Scanner, EveryPointLiesOnItsSurfaceAndItsPixelsRay) {
+TEST(Scanner, EveryPointLiesOnItsSurfaceAndItsPixelsRay) {
   const scene::Scene scene = random_scene(10, 11);
   const Scan result = scan(scene);
   EXPECT_LT(worst_surface_distance(scene, result.cloud), kSurfaceTolerance);
@@ -190,7 +190,7 @@ TEST(scene::Scanner, EveryPointLiesOnItsSurfaceAndItsPixelsRay) {
   }
 }
 
-TEST(scene::Scanner, RegionsShowTheSameSurfaces) {
+TEST(Scanner, RegionsShowTheSameSurfaces) {
   scene::Scene scene = random_scene(10, 12);
   const Scan bin = scan(scene);
   scene.scanner.region = scene::ScanRegion::full;
@@ -256,7 +256,7 @@ void expect_window_covers(const scene::PixelWindow& window, const scene::PixelWi
   EXPECT_LE(window.height, traced.height + 2 * slack);
 }
 
-TEST(scene::Scanner, WindowIsTheSmallestThatShowsBinAndTubes) {
+TEST(Scanner, WindowIsTheSmallestThatShowsBinAndTubes) {
   scene::Scene scene = random_scene(6, 13);
   scene.scanner.width = 192;
   scene.scanner.height = 120;
@@ -269,7 +269,7 @@ TEST(scene::Scanner, WindowIsTheSmallestThatShowsBinAndTubes) {
   expect_window_covers(scan(scene).window, traced_window(scene), 5);
 }
 
-TEST(scene::Scanner, WindowOfTubesAloneIsTheirs) {
+TEST(Scanner, WindowOfTubesAloneIsTheirs) {
   scene::Scene scene = random_scene(6, 18);
   scene.bin.length = scene.bin.width = 0.01;  // so small that the tubes alone decide
   scene.bin.height = 0.001;
@@ -283,7 +283,7 @@ TEST(scene::Scanner, WindowOfTubesAloneIsTheirs) {
   }
 }
 
-TEST(scene::Scanner, HasOneColourALabel) {
+TEST(Scanner, HasOneColourALabel) {
   const scene::Scene scene = random_scene(10, 14);
   const Scan result = scan(scene);
   const std::vector<cloud::Color> colors = cloud::label_colors(10);
@@ -301,7 +301,7 @@ TEST(scene::Scanner, HasOneColourALabel) {
   for (std::size_t k = 1; k <= 10; ++k) EXPECT_EQ(counts[k], result.tube_pixels[k - 1]);
 }
 
-TEST(scene::Scanner, ImagesOfManySizes) {
+TEST(Scanner, ImagesOfManySizes) {
   scene::Scene scene = random_scene(5, 15);
   for (const auto& [width, height] : {std::pair{1, 1}, {64, 40}, {4096, 3000}}) {
     scene.scanner.width = width;
@@ -323,7 +323,7 @@ TEST(scene::Scanner, ImagesOfManySizes) {
   EXPECT_NEAR(static_cast<double>(scan(scene).tube_pixels[0]), large / 64.0, 0.03 * large / 64.0);
 }
 
-TEST(scene::Scanner, LooksAwayFromEverything) {
+TEST(Scanner, LooksAwayFromEverything) {
   scene::Scene scene = random_scene(3, 16);
   scene.scanner.rotation_deg = {180.0, 0.0, 0.0};
   const Scan away = scan(scene);
@@ -332,7 +332,7 @@ TEST(scene::Scanner, LooksAwayFromEverything) {
   EXPECT_EQ(away.tube_pixels, std::vector<std::size_t>(3, 0));
 }
 
-TEST(scene::Scanner, BranchingTubesRingsAndLoneNodes) {
+TEST(Scanner, BranchingTubesRingsAndLoneNodes) {
   scene::Scene scene;
   look_closely(scene.scanner, 120, 76);
   tube::Tube tube;
@@ -348,7 +348,7 @@ TEST(scene::Scanner, BranchingTubesRingsAndLoneNodes) {
   for (const std::size_t pixels : scan(scene).tube_pixels) EXPECT_GT(pixels, 50u);
 }
 
-TEST(scene::Scanner, SameSceneSameBytes) {
+TEST(Scanner, SameSceneSameBytes) {
   const scene::Scene scene = random_scene(10, 17);
   const Scan first = scan(scene), second = scan(scene);
   ASSERT_EQ(first.cloud.size(), second.cloud.size());
@@ -358,4 +358,4 @@ TEST(scene::Scanner, SameSceneSameBytes) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -14,8 +14,6 @@
 
 namespace tubebin::testing {
 
-using namespace scan;
-
 inline double cylinder_distance(const Vec3& p, const Vec3& a, const Vec3& b, double radius) {
   const Vec3 axis = (b - a).normalized();
   const Vec3 from_middle = p - (a + b) / 2.0;

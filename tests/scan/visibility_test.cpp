@@ -7,7 +7,7 @@
 #include "scan/random_scene.hpp"
 #include "tubebin/scan/scanner.hpp"
 
-namespace tubebin {
+namespace tubebin::scan {
 namespace {
 
 using testing::look_closely;
@@ -146,4 +146,4 @@ TEST(Visibility, ACrossCoversItsOwnWidth) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::scan

@@ -17,7 +17,7 @@
 #include "tubebin/core/random.hpp"
 #include "tubebin/tube/tube_generator.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 namespace {
 
 using nlohmann::json;
@@ -289,4 +289,4 @@ TEST(SceneJson, DamageAndDeepNestingAreSurvived) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::scene

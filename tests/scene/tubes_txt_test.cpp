@@ -13,7 +13,7 @@
 #include "tubebin/core/random.hpp"
 #include "tubebin/tube/tube_generator.hpp"
 
-namespace tubebin {
+namespace tubebin::scene {
 namespace {
 
 using ::testing::HasSubstr;
@@ -186,4 +186,4 @@ TEST(TubesTxt, DamageIsSurvivedAndNamed) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::scene

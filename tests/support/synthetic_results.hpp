@@ -96,7 +96,7 @@ inline nlohmann::json model_json(const scene::SceneRecord& scene) {
   nlohmann::json tubes = nlohmann::json::array();
   for (const scene::PlacedTube& tube : scene.scene.tubes) {
     nlohmann::json cylinders = nlohmann::json::array();
-    for (const evaluation::CenterlinePiece& piece : centerline(tube))
+    for (const evaluation::CenterlinePiece& piece : evaluation::centerline(tube))
       cylinders.push_back({{"start", {piece.start.x(), piece.start.y(), piece.start.z() + 0.0004}},
                            {"end", {piece.end.x(), piece.end.y(), piece.end.z() + 0.0004}},
                            {"radius", tube.tube.radius}});
@@ -130,7 +130,7 @@ inline void write_synthetic_sweep(const fs::path& folder, const SyntheticSweep& 
         for (const std::string& method : sweep.methods)
           for (const double ratio : sweep.ratios) {
             const evaluation::RunKey key{name, set, tubes, number, method, ratio};
-            const fs::path run = folder / "results" / results::run_folder(key);
+            const fs::path run = folder / "results" / run_folder(key);
             write_text(run / "result.json", result_json(key).dump(1));
             write_text(run / "model.json", model);
             write_text(run / "times.json", nlohmann::json{{"read", 0.001}, {"total", modelling_seconds(key)}}.dump());

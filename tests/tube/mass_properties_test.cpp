@@ -6,7 +6,7 @@
 
 #include "tubebin/tube/tube_generator.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 namespace {
 
 Tube chain(std::vector<Vec3> nodes, double radius, double wall) {
@@ -130,4 +130,4 @@ TEST(MassProperties, InertiaOfGeneratedTubesIsPositiveDefinite) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::tube

@@ -8,7 +8,7 @@
 
 #include "tubebin/tube/tube_generator.hpp"
 
-namespace tubebin {
+namespace tubebin::tube {
 namespace {
 
 using ::testing::HasSubstr;
@@ -136,10 +136,10 @@ TEST(Shapes, AreReadBackAsTheyAreWritten) {
   const auto fields_of = [](TubeOptions& tube) {
     return [&tube](Fields& fields) { fields.group("tube", "", [&tube](Fields& inner) { describe(inner, tube); }); };
   };
-  const std::string text = write_yaml(dataset::fields_of(options));
+  const std::string text = write_yaml(fields_of(options));
   TubeOptions back = read_tube(text);
-  EXPECT_EQ(write_yaml(dataset::fields_of(back)), text);
-  EXPECT_THAT(list_fields(dataset::fields_of(back)), ::testing::Contains(KeyValue{"tube.paths[4].length", "0.15"}));
+  EXPECT_EQ(write_yaml(fields_of(back)), text);
+  EXPECT_THAT(list_fields(fields_of(back)), ::testing::Contains(KeyValue{"tube.paths[4].length", "0.15"}));
 }
 
 TEST(Shapes, CopiesHaveOptionsOfTheirOwn) {
@@ -355,4 +355,4 @@ TEST(MixedKinds, RefuseNumbersThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::tube

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace tubebin {
+namespace tubebin::tube {
 namespace {
 
 std::vector<double> bend_angles(const std::vector<Vec3>& endpoints) {
@@ -137,4 +137,4 @@ TEST(TubeOptions, ImpossibleCombinationsAreRefused) {
 }
 
 }  // namespace
-}  // namespace tubebin
+}  // namespace tubebin::tube

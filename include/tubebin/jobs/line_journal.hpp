@@ -18,8 +18,6 @@ class LineJournal {
 
   /// Appends a line; after an error (IoError) the file is as it was before.
   void append(const std::string& line);
-  /// Replaces the file by these lines, at once.
-  void rewrite(const std::vector<std::string>& lines);
 
  private:
   std::string path_;

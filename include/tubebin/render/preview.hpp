@@ -38,7 +38,4 @@ Image render_labels(const scene::Scene& scene, const scene::PixelWindow& window)
 /// The image as a PNG file's bytes; equal images give equal bytes.
 std::vector<std::uint8_t> encode_png(const Image& image);
 
-/// Complete or not at all. Throws IoError.
-void write_png(const std::string& path, const Image& image);
-
 }  // namespace tubebin::render

@@ -24,11 +24,8 @@ struct MergedScan : Scan {
   std::vector<scene::PixelWindow> further_windows;
 };
 MergedScan scan_from_all(const scene::Scene& scene, std::uint64_t seed = 0);
-/// Its noise-free twin.
+/// Its noise-free twin, as exact rays see the scene. Organized clouds agree pixel by pixel.
 MergedScan scan_exactly_from_all(scene::Scene scene);
-
-/// The noise-free twin of scan(): the scene as exact rays see it. Organized clouds agree pixel by pixel.
-Scan scan_exactly(scene::Scene scene);
 
 /// "3.13.5": the Embree that was compiled in.
 const char* embree_version();
