@@ -122,7 +122,7 @@ void print_gaps(const evaluation::Evaluation& evaluation, const std::vector<std:
                                                                     : "runs are not there yet and are left out:");
   if (!evaluation.missing.empty() && !evaluation.missing_counts_as_zero) {
     std::string command = "model_tubes --resume";
-    for (const std::string& folder : folders) command += " " + shell_word(folder);
+    for (const std::string& folder : folders) command += " " + shell_path(folder);
     fmt::print(stderr, "To make exactly what is missing:\n  {}\n", command);
   }
   print_names(evaluation.failed, "runs failed and count as zero:");

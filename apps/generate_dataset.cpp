@@ -216,11 +216,11 @@ int merge(const Arguments& arguments) {
     return 128 + report.signal;
   }
   for (const std::string& problem : report.problems) fmt::print("{}\n", problem);
-  fmt::print("{}: {} of {} scenes are complete and sound, {} are missing\n", output, report.complete, report.scenes,
-             report.missing.size());
+  fmt::print("{}: {} of {} scenes are complete and sound, {} are missing, {} could not be checked\n", output,
+             report.complete, report.scenes, report.missing.size(), report.unchecked.size());
   print_names(report.missing);
   for (const std::string& command : report.commands) fmt::print("To make exactly what is missing:\n  {}\n", command);
-  return static_cast<int>(report.commands.empty() ? ExitCode::done : ExitCode::incomplete);
+  return static_cast<int>(report.is_whole() ? ExitCode::done : ExitCode::incomplete);
 }
 
 int run(const Arguments& arguments) {

@@ -1,30 +1,57 @@
-/// What every program does around its own work: it parses its command line and turns what went wrong into a message and an
-/// exit code.
+/// What every program does around its own work: it sees to its standard streams, parses its command line, and turns what
+/// went wrong into a message and an exit code.
 #pragma once
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <new>
 
+#include "standard_streams.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin {
 
+/// CLI11 reads 010 as eight; here it is ten, as in every file that is read.
+inline void read_integers_as_decimal(CLI::App& app) {
+  const CLI::Validator strip_zeros(
+      [](std::string& text) {
+        const std::size_t digits = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
+        if (text.find_first_not_of("0123456789", digits) == std::string::npos)
+          text.erase(digits, std::min(text.find_first_not_of('0', digits), text.size() - 1) - digits);
+        return std::string();
+      },
+      "");
+  for (CLI::Option* option : app.get_options())
+    if (const std::string type = option->get_type_name(); type.starts_with("INT") || type.starts_with("UINT"))
+      option->transform(strip_zeros);
+}
+
 /// `run` returns the exit code of a command line that was understood.
 template <typename Run>
 int run_program(const char* name, CLI::App& app, int argc, char** argv, const Run& run) {
+  const auto fail = [&](const char* problem, ExitCode code) {
+    fmt::print(stderr, "{}: {}\n", name, problem);
+    return static_cast<int>(code);
+  };
+  open_standard_streams();
+  int code = 0;
   try {
+    read_integers_as_decimal(app);
     app.parse(argc, argv);
-    return run();
+    code = run();
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+    code = app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
   } catch (const ConfigError& error) {
-    fmt::print(stderr, "{}: {}\n", name, error.what());
-    return static_cast<int>(ExitCode::usage);
+    code = fail(error.what(), ExitCode::usage);
+  } catch (const std::bad_alloc&) {
+    code = fail("out of memory", ExitCode::failed);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: {}\n", name, error.what());
-    return static_cast<int>(ExitCode::failed);
+    code = fail(error.what(), ExitCode::failed);
   }
+  if (const std::string problem = close_standard_output(); !problem.empty())
+    return fail(problem.c_str(), ExitCode::failed);
+  return code;
 }
 
 }  // namespace tubebin

@@ -46,7 +46,7 @@ void make_scene(const dataset::DatasetConfig& config, const dataset::SceneStore&
 int main(int argc, char** argv) try {
   if (argc < 5) throw_config_error("usage: dataset_table CONFIG.yaml FOLDER CASES TUBES...");
   const dataset::DatasetConfig config = dataset::load_config(argv[1]);
-  const dataset::SceneStore store(argv[2], config.output);
+  const dataset::SceneStore store(OutputFolder(argv[2]), config.output);
   const int cases = std::stoi(argv[3]);
 
   fmt::print("| tubes | build ms | drop ms | scan ms | write ms | total ms | rejected a scene | peak MB |\n");

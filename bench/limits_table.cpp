@@ -158,7 +158,7 @@ dJointID __wrap_dJointCreateContact(dWorldID world, dJointGroupID group, const d
 int main(int argc, char** argv) try {
   if (argc != 5) throw_config_error("usage: limits_table CONFIG.yaml FOLDER CASES TUBES");
   const dataset::DatasetConfig config = dataset::load_config(argv[1]);
-  const dataset::SceneStore store(argv[2], config.output);
+  const dataset::SceneStore store(OutputFolder(argv[2]), config.output);
   Stage scan_stage, write_stage;
   for (int case_number = 1; case_number <= std::stoi(argv[3]); ++case_number) {
     const dataset::SceneId id{config.set, std::stoi(argv[4]), case_number};

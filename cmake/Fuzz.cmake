@@ -1,6 +1,6 @@
 # Fuzz targets, with clang's libFuzzer and sanitizers over all of our code:
 #   cmake -S . -B build-fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DTUBEBIN_FUZZ=ON -DTUBEBIN_TESTS=OFF
-#   ninja -C build-fuzz fuzzers && build-fuzz/bin/fuzz_cloud NEW_INPUTS_DIR tests/fuzz/corpus/cloud
+#   ninja -C build-fuzz fuzzers && build-fuzz/bin/fuzz_cloud -rss_limit_mb=2048 -timeout=10 NEW_INPUTS_DIR tests/fuzz/corpus/cloud
 if(NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
   message(FATAL_ERROR "TUBEBIN_FUZZ needs clang: -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang")
 endif()

@@ -148,7 +148,6 @@ double BeforeAfter::gain_error() const {
 CalibrationReport calibrate_modeler(const CalibrationOptions& options, const results::ModelConfig& start,
                                     jobs::Progress::Style progress_style) try {
   const auto began = std::chrono::steady_clock::now();
-  const jobs::StopNote stop_note;
   CalibrationReport report;
   report.parameters = choose_parameters(options, start.modeling.method);
   report.before = setting_of(start, report.parameters);
@@ -158,13 +157,14 @@ CalibrationReport calibrate_modeler(const CalibrationOptions& options, const res
   report.held_back_scenes = names_of(split.held_back);
 
   const std::string folder = options.output + ".trials";
-  fs::create_directories(folder);
-  const jobs::FolderLock lock(folder);
+  const OutputFolder trials_folder(folder);
+  const jobs::FolderLock lock(trials_folder);
   const double scored =
       options.budget * static_cast<double>(split.training.size()) + 2.0 * static_cast<double>(split.held_back.size());
   jobs::Progress progress(static_cast<std::size_t>(scored * static_cast<double>(options.ratios.size())), "clouds",
                           progress_style);
-  CalibrationTrials trials(folder, options, dataset, start, report.parameters, progress);
+  const jobs::StopNote stop_note;  // until now there was nothing that a signal could lose
+  CalibrationTrials trials(trials_folder, options, dataset, start, report.parameters, progress);
   try {
     calibrate(options, start, split, trials, report);
   } catch (const CalibrationStopped& stopped) {

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "calibration/number_fields.hpp"
+#include "core/json_reader.hpp"
 #include "jobs/stop_note.hpp"
 #include "tubebin/core/file_record.hpp"
 #include "tubebin/core/version.hpp"
@@ -54,15 +55,16 @@ Setting setting_of(const results::ModelConfig& config, const std::vector<TunedPa
   return setting;
 }
 
-CalibrationTrials::CalibrationTrials(const std::string& folder, const CalibrationOptions& options,
+CalibrationTrials::CalibrationTrials(const OutputFolder& folder, const CalibrationOptions& options,
                                      const scene::DatasetFiles& dataset, const results::ModelConfig& start,
                                      std::vector<TunedParameter> parameters, jobs::Progress& progress)
     : options_(options),
       dataset_(dataset),
+      hashes_(dataset),
       start_(start),
       parameters_(std::move(parameters)),
       progress_(progress),
-      journal_(folder + "/runs.jsonl") {
+      journal_(folder, "runs.jsonl") {
   read_journal();
 }
 
@@ -74,28 +76,35 @@ void CalibrationTrials::read_journal() {
                        journal_.path());
   for (std::size_t i = 1; i < journal_.lines().size(); ++i) {
     try {
-      Json line = Json::parse(journal_.lines()[i]);
+      Json line = parse_ordered_json(journal_.lines()[i], journal_.path());
       const double recall = line.at("micro_recall");
       line.erase("micro_recall");
       line.erase("failed");
       recall_of_[line.dump()] = recall;
-    } catch (const Json::exception& error) {
+    } catch (const std::exception& error) {
       throw_io_error("{}:{}: is no trial: {}; remove the line", journal_.path(), i + 1, error.what());
     }
   }
 }
 
-/// The line without its result. The cloud's hash is in it, so that no recall is of a cloud that was made anew.
+/// The line without its result. The files' hashes are in it, so that no recall is of a scene that was made anew.
 CalibrationTrials::Key CalibrationTrials::key_of(const Setting& setting, const results::ModelingRun& run) {
   Json values = Json::object();
   for (std::size_t p = 0; p < parameters_.size(); ++p) values[parameters_[p].key] = setting[p];
-  return Json{{"scene", run.scene}, {"cloud", cloud_hash(run)}, {"ratio", run.ratio}, {"setting", values}}.dump();
+  const scene::InputHashes& hashes = hashes_of(run);
+  return Json{{"scene", run.scene},
+              {"cloud", hashes.cloud_xxh128},
+              {"scene_json", hashes.scene_json_xxh128},
+              {"ratio", run.ratio},
+              {"setting", values}}
+      .dump();
 }
 
-std::string CalibrationTrials::cloud_hash(const results::ModelingRun& run) {
-  std::string& hash = hash_of_cloud_[run.scene];
-  if (hash.empty()) hash = record_bytes(dataset_.read(run.scene, run.cloud)).xxh128;
-  return hash;
+/// Reading a pack takes its time, in which a signal is heard.
+const scene::InputHashes& CalibrationTrials::hashes_of(const results::ModelingRun& run) {
+  if (const int signal = jobs::StopNote::received(); signal != 0) throw CalibrationStopped{signal};
+  const auto known = hashes_of_scene_.find(run.scene);
+  return known != hashes_of_scene_.end() ? known->second : hashes_of_scene_[run.scene] = hashes_.of(run.scene);
 }
 
 std::vector<std::vector<double>> CalibrationTrials::recalls(const std::vector<Setting>& settings,
@@ -142,6 +151,7 @@ void CalibrationTrials::find_missing(const std::vector<Trial>& missing) {
 /// In a worker process.
 jobs::AttemptResult CalibrationTrials::attempt(const Trial& trial) const {
   const results::CloudToModel input = results::read_cloud_to_model(dataset_, {trial.run.scene, trial.run.cloud});
+  hashes_.require_recorded(trial.run.scene, input.hashes);
   if (results::truth_labels(input).empty())
     throw_io_error("{}: has no labels, and no colours of a scene.json beside it, to compare with", input.path);
   const results::ModelConfig config = results::run_config(apply_setting(start_, parameters_, trial.setting), trial.run);

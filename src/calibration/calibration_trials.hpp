@@ -19,7 +19,7 @@ struct CalibrationStopped {
 class CalibrationTrials {
  public:
   /// Reads the journal in `folder`. Throws ConfigError where it is of other options or of another version, and IoError.
-  CalibrationTrials(const std::string& folder, const CalibrationOptions& options, const scene::DatasetFiles& dataset,
+  CalibrationTrials(const OutputFolder& folder, const CalibrationOptions& options, const scene::DatasetFiles& dataset,
                     const results::ModelConfig& start, std::vector<TunedParameter> parameters,
                     jobs::Progress& progress);
 
@@ -41,20 +41,21 @@ class CalibrationTrials {
 
   void read_journal();
   Key key_of(const Setting& setting, const results::ModelingRun& run);
-  std::string cloud_hash(const results::ModelingRun& run);
+  const scene::InputHashes& hashes_of(const results::ModelingRun& run);
   void find_missing(const std::vector<Trial>& missing);
   jobs::AttemptResult attempt(const Trial& trial) const;
   void keep(const Trial& trial, const jobs::JobOutcome& outcome);
 
   const CalibrationOptions& options_;
   const scene::DatasetFiles& dataset_;
+  scene::DatasetHashes hashes_;
   const results::ModelConfig& start_;
   std::vector<TunedParameter> parameters_;
   jobs::Progress& progress_;
   jobs::LineJournal journal_;
   std::map<Key, double> recall_of_;
   std::map<Key, bool> used_;  ///< of recall_of_: those that this call has asked for
-  std::map<std::string, std::string> hash_of_cloud_;
+  std::map<std::string, scene::InputHashes> hashes_of_scene_;
   std::size_t runs_made_ = 0, runs_before_ = 0, failed_ = 0;
 };
 

@@ -238,7 +238,22 @@ void decode_binary(const PcdHeader& header, std::string_view data, const std::st
     columns.set(role, {data.data() + offset, stride, scalar_type(field), false});
   });
   if (header.points > data.size() / stride) fail_truncated(header, data.size(), name);
+  // Less than a point may be a writer's padding.
+  if (data.size() - header.points * stride >= stride)
+    throw_io_error("{}: the header says {} points of {} bytes, but there are {} bytes more", name, header.points,
+                   stride, data.size() - header.points * stride);
   columns.decode(header.points, scale, name, cloud);
+}
+
+/// A small file may announce many points. Whole images of a camera, nearly all of whose pixels saw nothing, need a hundred
+/// times their compressed bytes and stay below the lower bound; a compressor's bomb does not.
+void require_memory(const PcdHeader& header, std::size_t unpacked, std::size_t packed, const std::string& name) {
+  constexpr std::size_t kAlwaysAllowed = std::size_t{256} << 20;  // bytes
+  constexpr std::size_t kMultiple = 64;
+  const std::size_t needed = unpacked + header.points * (sizeof(Point) + sizeof(Color) + 2 * sizeof(Label));
+  if (needed > std::max(kAlwaysAllowed, kMultiple * packed))
+    throw_io_error("{}: its {} points would take {} bytes of memory; valid: up to {} times the {} compressed bytes",
+                   name, header.points, needed, kMultiple, packed);
 }
 
 /// The fields one after the other, each with all its points' values.
@@ -261,6 +276,7 @@ std::vector<char> decompress(const PcdHeader& header, std::string_view data, con
                    header.points, header.point_size(), unpacked);
   if (unpacked / kLongestRun > packed)
     throw_io_error("{}: {} compressed bytes cannot hold the {} that are announced", name, packed, unpacked);
+  require_memory(header, unpacked, packed, name);
   std::vector<char> out(unpacked);
   if (lzf_decompress(data.data(), packed, out.data(), unpacked) != unpacked)
     throw_io_error("{}: the compressed data is damaged", name);

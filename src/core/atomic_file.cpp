@@ -5,13 +5,10 @@
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
 #include <system_error>
 
-#include "core/file_descriptor.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin {
@@ -24,87 +21,92 @@ namespace {
 /// A file under a temporary name, gone at the end of the scope unless it was renamed.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const std::string& final_path) : final_path_(final_path), file_(open_new()) {}
+  explicit TemporaryFile(const FolderEntry& target)
+      : target_(target), name_(unfinished_name(target.name)), file_(open_new()) {}
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   ~TemporaryFile() {
-    if (!temporary_path_.empty()) ::unlink(temporary_path_.c_str());
+    if (!name_.empty()) ::unlinkat(folder(), name_.c_str(), 0);
   }
 
   void write(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t written = ::write(file_.get(), bytes.data(), bytes.size());
       if (written >= 0) bytes.remove_prefix(static_cast<std::size_t>(written));
-      else if (errno != EINTR) fail(final_path_, "cannot be written", errno);
+      else if (errno != EINTR) fail();
     }
-    if (::fsync(file_.get()) != 0) fail(final_path_, "cannot be written", errno);
-    if (file_.close() != 0) fail(final_path_, "cannot be written", errno);
+    if (::fsync(file_.get()) != 0) fail();
+    if (file_.close() != 0) fail();
   }
 
   /// A hard link is what network file systems keep to be made once. Returns false where the name is taken.
   bool link_to_final() {
-    if (::link(temporary_path_.c_str(), final_path_.c_str()) == 0) return true;  // the temporary name goes by itself
+    if (::linkat(folder(), name_.c_str(), folder(), target_.name.c_str(), 0) == 0)
+      return true;  // the other goes by itself
     if (errno == EEXIST) return false;
-    if (errno != EPERM && errno != ENOTSUP && errno != ENOSYS && errno != EMLINK)
-      fail(final_path_, "cannot be written", errno);
-    if (::access(final_path_.c_str(), F_OK) == 0) return false;
+    if (errno != EPERM && errno != ENOTSUP && errno != ENOSYS && errno != EMLINK) fail();
+    if (::faccessat(folder(), target_.name.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0) return false;
     rename_to_final();  // a file system without hard links
     return true;
   }
 
   void rename_to_final() {
-    if (::rename(temporary_path_.c_str(), final_path_.c_str()) != 0) fail(final_path_, "cannot be written", errno);
-    temporary_path_.clear();
+    if (::renameat(folder(), name_.c_str(), folder(), target_.name.c_str()) != 0) fail();
+    name_.clear();
   }
 
  private:
-  /// Another thread, or an earlier process of the same id that was killed, may hold a name: take the next.
+  int folder() const { return target_.folder.get(); }
+  [[noreturn]] void fail() const { fail_at(target_, "cannot be written", errno); }
+
+  /// An earlier process of the same id that was killed may hold a name: take the next.
   int open_new() {
-    static std::atomic<unsigned> counter = 0;
     while (true) {
-      const std::string candidate = fmt::format("{}.{}-{}.tmp", final_path_, ::getpid(), counter++);
-      const int number = ::open(candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (number >= 0) {
-        temporary_path_ = candidate;
-        return number;
+      const int number = ::openat(folder(), name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+      if (number >= 0) return number;
+      if (errno != EEXIST && errno != EINTR) {
+        name_.clear();
+        fail();
       }
-      if (errno != EEXIST && errno != EINTR) fail(final_path_, "cannot be written", errno);
+      name_ = unfinished_name(target_.name);
     }
   }
 
-  std::string final_path_;
-  std::string temporary_path_;
+  const FolderEntry& target_;
+  std::string name_;
   FileDescriptor file_;
 };
 
-/// The rename itself is only on the disk once the folder is. Some file systems cannot sync folders; there the
-/// file is as safe as they make it.
-void sync_folder_of(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  const FileDescriptor descriptor(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (descriptor.get() < 0 || ::fsync(descriptor.get()) == 0 || errno == EINVAL || errno == ENOTSUP) return;
-  fail(path, "its folder cannot be synced", errno);
+}  // namespace
+
+void write_atomically(const FolderEntry& entry, std::string_view bytes) {
+  struct stat status;
+  // A rename would put a regular file in the place of a device, or fail at a folder.
+  if (::fstatat(entry.folder.get(), entry.name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0 &&
+      !S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode))
+    throw_io_error("{}: cannot be written: exists and is no regular file", entry.place);
+  TemporaryFile file(entry);
+  file.write(bytes);
+  file.rename_to_final();
+  sync_folder(entry.folder, entry.place);
 }
 
-}  // namespace
+bool create_atomically(const FolderEntry& entry, std::string_view bytes) {
+  TemporaryFile file(entry);
+  file.write(bytes);
+  if (!file.link_to_final()) return false;
+  sync_folder(entry.folder, entry.place);
+  return true;
+}
 
 void write_file_atomically(const std::string& path, std::string_view bytes) {
   struct stat status;
-  // A rename would put a regular file in the place of a folder or a device.
+  // As /dev/stdout, a link to a pipe: the user's own link, which is not to become a file.
   if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
     throw_io_error("{}: cannot be written: exists and is no regular file", path);
-  TemporaryFile file(path);
-  file.write(bytes);
-  file.rename_to_final();
-  sync_folder_of(path);
-}
-
-bool create_file_atomically(const std::string& path, std::string_view bytes) {
-  TemporaryFile file(path);
-  file.write(bytes);
-  if (!file.link_to_final()) return false;
-  sync_folder_of(path);
-  return true;
+  const FolderEntry entry = entry_of(path);
+  remove_unfinished_of_the_dead(entry);
+  write_atomically(entry, bytes);
 }
 
 std::string process_name() {
@@ -113,22 +115,33 @@ std::string process_name() {
   return fmt::format("{}-{}", host.data(), ::getpid());
 }
 
-std::string read_file(const std::string& path) {
+std::string read_file(const std::string& path, std::uint64_t bytes_max) {
   // A named pipe without a writer would block in open() for ever otherwise.
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status;
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0) fail(path, "cannot be read", errno);
   if (S_ISDIR(status.st_mode)) throw_io_error("{}: cannot be read: is a folder", path);
   if (!S_ISREG(status.st_mode)) throw_io_error("{}: cannot be read: is no regular file", path);
+  if (static_cast<std::uint64_t>(status.st_size) > bytes_max)
+    throw_io_error("{}: cannot be read: has {} bytes; valid: up to {}", path, status.st_size, bytes_max);
+  return read_bytes(file, 0, static_cast<std::uint64_t>(status.st_size), path);
+}
 
-  std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
+std::string read_bytes(const FileDescriptor& file, std::uint64_t offset, std::uint64_t count, const std::string& name) {
+  std::string bytes;
+  try {
+    bytes.resize(count);
+  } catch (const std::exception&) {  // bad_alloc, length_error
+    throw_io_error("{}: cannot be read: {} bytes are more than there is memory for", name, count);
+  }
   std::size_t filled = 0;
   while (filled < bytes.size()) {
-    const ssize_t count = ::read(file.get(), bytes.data() + filled, bytes.size() - filled);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(path, "cannot be read", errno);
-    if (count == 0) break;  // the file shrank meanwhile
-    filled += static_cast<std::size_t>(count);
+    const ssize_t got =
+        ::pread(file.get(), bytes.data() + filled, bytes.size() - filled, static_cast<off_t>(offset + filled));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(name, "cannot be read", errno);
+    if (got == 0) break;  // the file shrank meanwhile
+    filled += static_cast<std::size_t>(got);
   }
   bytes.resize(filled);
   return bytes;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/limits_text.hpp"
+#include "tubebin/core/atomic_file.hpp"
 
 namespace tubebin {
 namespace {
@@ -72,11 +73,16 @@ void check_depth(std::string_view text, const std::string& name) {
 
 }  // namespace
 
-nlohmann::json parse_json(std::string_view text, const std::string& name) {
+namespace {
+
+template <typename Json>
+Json parse_bounded(std::string_view text, const std::string& name) {
   if (text.empty()) throw_io_error("{}: the file is empty; expected JSON", name);
+  if (text.size() > kJsonBytesMax)
+    throw_io_error("{}: has {} bytes of JSON; valid: up to {}", name, text.size(), kJsonBytesMax);
   check_depth(text, name);
   try {
-    return nlohmann::json::parse(text);
+    return Json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {
     const std::string_view before = text.substr(0, error.byte > 0 ? error.byte - 1 : 0);
     const auto line = std::count(before.begin(), before.end(), '\n') + 1;
@@ -85,6 +91,20 @@ nlohmann::json parse_json(std::string_view text, const std::string& name) {
   } catch (const nlohmann::json::exception& error) {  // a number beyond a double
     throw_io_error("{}: not valid JSON: {}", name, error.what());
   }
+}
+
+}  // namespace
+
+nlohmann::json parse_json(std::string_view text, const std::string& name) {
+  return parse_bounded<nlohmann::json>(text, name);
+}
+
+nlohmann::ordered_json parse_ordered_json(std::string_view text, const std::string& name) {
+  return parse_bounded<nlohmann::ordered_json>(text, name);
+}
+
+nlohmann::ordered_json read_json(const std::string& path) {
+  return parse_ordered_json(read_file(path, kJsonBytesMax), path);
 }
 
 void JsonPlace::fail(const std::string& valid) const {

@@ -11,8 +11,17 @@
 
 namespace tubebin {
 
-/// Parses the text; throws IoError "name:line:column: ..." where it is no JSON.
+/// The longest JSON text that is read. Values take up to 32 times the memory of their text.
+constexpr std::size_t kJsonBytesMax = 64 << 20;
+
+/// Parses the text; throws IoError "name:line:column: ..." where it is no JSON, is nested more than 100 deep, or is longer
+/// than kJsonBytesMax. All JSON is read here: the library itself recurses as deep as a text asks.
 nlohmann::json parse_json(std::string_view text, const std::string& name);
+/// The same, with the keys of objects in their order.
+nlohmann::ordered_json parse_ordered_json(std::string_view text, const std::string& name);
+
+/// The file's JSON likewise.
+nlohmann::ordered_json read_json(const std::string& path);
 
 /// A value and where it stands. All functions throw IoError naming file, pointer, value and what would be
 /// right.

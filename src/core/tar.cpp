@@ -3,14 +3,14 @@
 #include <archive.h>
 #include <archive_entry.h>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 
-#include "core/file_descriptor.hpp"
+#include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin {
@@ -22,11 +22,22 @@ using TarReader = std::unique_ptr<archive, decltype(&archive_read_free)>;
 using Writer = std::unique_ptr<archive, decltype(&archive_write_free)>;
 using Entry = std::unique_ptr<archive_entry, decltype(&archive_entry_free)>;
 
-TarReader open_tar(const std::string& path) {
+/// A regular file, so that no pipe and no device is waited for.
+FileDescriptor open_regular(const std::string& path, std::uint64_t& file_bytes) {
+  FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  struct stat status;
+  if (file.get() < 0 || ::fstat(file.get(), &status) != 0)
+    throw_io_error("{}: cannot be read: {}", path, std::strerror(errno));
+  if (!S_ISREG(status.st_mode)) throw_io_error("{}: cannot be read: is no regular file", path);
+  file_bytes = static_cast<std::uint64_t>(status.st_size);
+  return file;
+}
+
+TarReader open_tar(const FileDescriptor& file, const std::string& path) {
   TarReader reader(archive_read_new(), archive_read_free);
   archive_read_support_format_tar(reader.get());
   archive_read_support_format_empty(reader.get());
-  if (archive_read_open_filename(reader.get(), path.c_str(), kBlock) != ARCHIVE_OK)
+  if (archive_read_open_fd(reader.get(), file.get(), kBlock) != ARCHIVE_OK)
     throw_io_error("{}: cannot be read: {}", path, archive_error_string(reader.get()));
   return reader;
 }
@@ -39,8 +50,9 @@ la_ssize_t collect(archive*, void* text, const void* bytes, std::size_t size) {
 }  // namespace
 
 std::vector<TarMember> list_tar(const std::string& path) {
-  const TarReader reader = open_tar(path);
-  const std::uintmax_t file_bytes = std::filesystem::file_size(path);
+  std::uint64_t file_bytes = 0;
+  const FileDescriptor file = open_regular(path, file_bytes);
+  const TarReader reader = open_tar(file, path);
   std::vector<TarMember> members;
   archive_entry* entry = nullptr;
   while (true) {
@@ -50,25 +62,21 @@ std::vector<TarMember> list_tar(const std::string& path) {
     if (status != ARCHIVE_OK && status != ARCHIVE_WARN)
       throw_io_error("{}: is no tar file: {}", path, archive_error_string(reader.get()));
     if (archive_entry_filetype(entry) != AE_IFREG) continue;
-    const TarMember member{archive_entry_pathname(entry),
-                           static_cast<std::uint64_t>(archive_filter_bytes(reader.get(), 0)),
+    const char* name = archive_entry_pathname(entry);  // null where libarchive can't tell it in this locale
+    if (name == nullptr) throw_io_error("{}: the name of member {} can't be read", path, members.size() + 1);
+    const TarMember member{name, static_cast<std::uint64_t>(archive_filter_bytes(reader.get(), 0)),
                            static_cast<std::uint64_t>(archive_entry_size(entry))};
-    if (member.offset + member.bytes > file_bytes) return members;
+    if (member.offset > file_bytes || member.bytes > file_bytes - member.offset) return members;
     members.push_back(member);
   }
 }
 
 std::string read_tar_member(const std::string& path, const TarMember& member) {
-  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  std::string bytes(member.bytes, '\0');
-  for (std::size_t filled = 0; filled < bytes.size();) {
-    const ssize_t count =
-        ::pread(file.get(), bytes.data() + filled, bytes.size() - filled, static_cast<off_t>(member.offset + filled));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw_io_error("{}: cannot be read: {}", path, std::strerror(errno));
-    if (count == 0) throw_io_error("{}: {}: ends after {} of {} bytes", path, member.name, filled, member.bytes);
-    filled += static_cast<std::size_t>(count);
-  }
+  std::uint64_t file_bytes = 0;
+  const FileDescriptor file = open_regular(path, file_bytes);
+  std::string bytes = read_bytes(file, member.offset, member.bytes, path);
+  if (bytes.size() < member.bytes)
+    throw_io_error("{}: {}: ends after {} of {} bytes", path, member.name, bytes.size(), member.bytes);
   return bytes;
 }
 

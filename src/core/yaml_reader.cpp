@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <set>
 #include <sstream>
 
 #include "core/limits_text.hpp"
+#include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/text_scan.hpp"
 #include "tubebin/core/yaml.hpp"
 
 namespace tubebin {
@@ -59,8 +60,9 @@ class Reader : public Fields {
     const YAML::Node found = find(key);
     if (!found) return;
     const std::string text = scalar(found, path(key), "a whole number from 0 to 18446744073709551615");
-    if (text.starts_with('-') || !YAML::convert<std::uint64_t>::decode(found, value))
-      fail(found, path(key), text, "a whole number from 0 to 18446744073709551615");
+    const auto number = tubebin::to_number<std::uint64_t>(text);
+    if (!number) fail(found, path(key), text, "a whole number from 0 to 18446744073709551615");
+    value = *number;
   }
   void flag(const char* key, bool& value, const char*) override {
     const YAML::Node found = find(key);
@@ -186,10 +188,9 @@ class Reader : public Fields {
   double to_number(const YAML::Node& node, const std::string& key_path, Limits limits, const char* unit) const {
     const std::string valid = valid_range(limits, unit);
     const std::string text = scalar(node, key_path, valid);
-    double value = 0.0;
-    if (!YAML::convert<double>::decode(node, value) || !(value >= limits.min && value <= limits.max))
-      fail(node, key_path, text, valid);
-    return value;
+    const auto value = tubebin::to_number<double>(text);
+    if (!value || !(*value >= limits.min && *value <= limits.max)) fail(node, key_path, text, valid);
+    return *value;
   }
 
   int to_integer(const YAML::Node& node, const std::string& key_path, Limits limits, const char* unit) const {
@@ -197,10 +198,9 @@ class Reader : public Fields {
     limits.max = std::min<double>(limits.max, std::numeric_limits<int>::max());
     const std::string valid = "a whole number, " + valid_range(limits, unit);
     const std::string text = scalar(node, key_path, valid);
-    int value = 0;
-    if (!YAML::convert<int>::decode(node, value) || value < limits.min || value > limits.max)
-      fail(node, key_path, text, valid);
-    return value;
+    const auto value = tubebin::to_number<int>(text);  // 010 is ten, as on the command line, and not YAML 1.1's eight
+    if (!value || *value < limits.min || *value > limits.max) fail(node, key_path, text, valid);
+    return *value;
   }
 
   const YAML::Node node_;
@@ -213,7 +213,11 @@ class Reader : public Fields {
 YAML::Node parse(const std::string& text, const std::string& name) {
   YAML::Node root;
   try {
-    root = YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (!documents.empty()) root = documents.front();
+    if (documents.size() > 1)
+      throw_config_error("{}: holds {} YAML documents; valid: one, without another '---'",
+                         place_of(name, documents[1].Mark()), documents.size());
   } catch (const YAML::Exception& error) {
     throw_config_error("{}: not valid YAML: {}", place_of(name, error.mark), error.msg);
   }
@@ -223,11 +227,13 @@ YAML::Node parse(const std::string& text, const std::string& name) {
   return root;
 }
 
-std::string read_whole_file(const std::string& path) {
-  if (std::filesystem::is_directory(path)) throw_config_error("{}: is a folder, expected a YAML file", path);
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw_config_error("{}: cannot be opened for reading", path);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+/// Far above any configuration; a node takes a few hundred bytes of memory and two of a file.
+constexpr std::uint64_t kBytesMax = 1 << 20;
+
+std::string read_whole_file(const std::string& path) try {
+  return tubebin::read_file(path, kBytesMax);
+} catch (const IoError& error) {
+  throw_config_error("{}", error.what());
 }
 
 void read_root(const YAML::Node& root, const std::string& name, KeyPlaces& places, bool may_include,

@@ -29,11 +29,31 @@ void check_tubes_once(const DatasetConfig& config, const KeyPlaces& places) {
     if (!seen.insert(count).second) places.fail("tubes", fmt::format("{} stands in the list twice", count));
 }
 
+/// Far above what was ever made, far below what lists of their names fill the memory with.
+constexpr std::size_t kScenesMax = 5'000'000;
+
+void check_scene_count(const DatasetConfig& config, const KeyPlaces& places) {
+  const std::size_t scenes = config.tubes.size() * static_cast<std::size_t>(config.cases);
+  if (scenes > kScenesMax)
+    places.fail("cases", fmt::format("{} for each of {} numbers of tubes are {} scenes; valid: up to {} together",
+                                     config.cases, config.tubes.size(), scenes, kScenesMax));
+}
+
 void check_version(const DatasetConfig& config, const KeyPlaces& places) {
   if (!config.tool_version.empty() && config.tool_version != tool_version())
     places.fail("tool_version", fmt::format("'{}' made this file and '{}' is running, whose scenes may differ; "
                                             "remove the key to use the configuration with this version",
                                             config.tool_version, tool_version()));
+}
+
+void check_scanner(const scene::Scanner& scanner, const scene::Bin& bin, const KeyPlaces& places,
+                   const std::string& prefix) {
+  check(scanner, places, prefix);
+  for (const scene::Box& box : bin_boxes(bin))
+    if (box.contains(scanner.position))
+      places.fail(prefix + ".position",
+                  fmt::format("[{}, {}, {}] m is inside the bin's floor or a wall of it; valid: a place in the open",
+                              scanner.position.x(), scanner.position.y(), scanner.position.z()));
 }
 
 void check_preview(const DatasetConfig& config, const KeyPlaces& places) {
@@ -113,15 +133,20 @@ std::function<void(Fields&)> fields_of(DatasetConfig& config) {
 
 void check(const DatasetConfig& config, const KeyPlaces& places) {
   check_version(config, places);
+  check_preview(config, places);
+  check_of_any_version(config, places);
+}
+
+void check_of_any_version(const DatasetConfig& config, const KeyPlaces& places) {
   check_set_name(config, places);
   check_tubes_once(config, places);
-  check_preview(config, places);
+  check_scene_count(config, places);
   if (config.kinds.empty()) check(config.tube, places, "tube");
   check(config.kinds, config.tubes, places);
   check(config.physics, places, "physics");
-  if (config.scanners.empty()) check(config.scanner, places, "scanner");
+  if (config.scanners.empty()) check_scanner(config.scanner, config.bin, places, "scanner");
   for (std::size_t i = 0; i < config.scanners.size(); ++i)
-    check(config.scanners[i], places, fmt::format("scanners[{}]", i));
+    check_scanner(config.scanners[i], config.bin, places, fmt::format("scanners[{}]", i));
 }
 
 DatasetConfig load_config(const std::string& path) {

@@ -10,15 +10,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string config_path(const std::string& folder) { return folder + "/config.yaml"; }
+constexpr const char* kConfigFile = "config.yaml";
 
-std::string make_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder))
-    throw_io_error("{}: cannot be made: {}", folder, error ? error.message() : "a file of that name is there");
-  return folder;
-}
+std::string config_path(const std::string& folder) { return folder + "/" + kConfigFile; }
 
 void refuse_if_made_otherwise(const std::string& folder, const DatasetConfig& there, const DatasetConfig& here) {
   const std::vector<std::string> differing = differences(there, here);
@@ -29,30 +23,28 @@ void refuse_if_made_otherwise(const std::string& folder, const DatasetConfig& th
       folder, fmt::join(differing, "\n  "));
 }
 
-bool is_foreign(const fs::path& file) {
-  const std::string name = file.filename().string();
-  return !name.starts_with('.') && !name.starts_with("config.yaml.");
-}
-
 /// A folder with other things in it was hardly meant.
 void refuse_if_foreign(const std::string& folder) {
-  if (std::none_of(fs::directory_iterator(folder), {}, [](const auto& entry) { return is_foreign(entry.path()); }))
-    return;
+  const auto is_foreign = [](const fs::directory_entry& entry) {
+    return !entry.path().filename().string().starts_with('.');
+  };
+  if (std::none_of(fs::directory_iterator(folder), {}, is_foreign)) return;
   if (fs::exists(config_path(folder))) return;  // another part of the same call was quicker
   throw_config_error("{}: holds files, but no data set (config.yaml is missing); choose a new or empty folder", folder);
 }
 
 /// Writes config.yaml where it is missing or gains scenes, and returns what it says.
-DatasetConfig settle_config(const std::string& folder, const DatasetConfig& wanted) {
-  if (!fs::exists(config_path(folder))) {
-    refuse_if_foreign(folder);
-    if (create_file_atomically(config_path(folder), format_config(wanted))) return wanted;
+DatasetConfig settle_config(const OutputFolder& folder, const DatasetConfig& wanted) {
+  const std::string path = config_path(folder.path());
+  if (!fs::exists(path)) {
+    refuse_if_foreign(folder.path());
+    if (create_atomically(folder.make_entry(kConfigFile), format_config(wanted))) return wanted;
   }
-  const DatasetConfig there = read_dataset_config(folder);
-  refuse_if_made_otherwise(folder, there, wanted);
+  const DatasetConfig there = read_dataset_config(folder.path());
+  refuse_if_made_otherwise(folder.path(), there, wanted);
   DatasetConfig settled = unite(there, wanted);
   if (format_config(settled) != format_config(there))
-    write_file_atomically(config_path(folder), format_config(settled));
+    write_atomically(folder.make_entry(kConfigFile), format_config(settled));
   return settled;
 }
 
@@ -61,12 +53,18 @@ DatasetConfig settle_config(const std::string& folder, const DatasetConfig& want
 DatasetConfig read_dataset_config(const std::string& folder) {
   if (!fs::exists(config_path(folder))) throw_io_error("{}: is no data set: config.yaml is missing", folder);
   DatasetConfig config;
-  read_yaml_file(config_path(folder), fields_of(config));
+  check_of_any_version(config, read_yaml_file(config_path(folder), fields_of(config)));
   return config;
 }
 
+void require_own_version(const DatasetConfig& config, const std::string& folder) {
+  if (config.tool_version != tool_version())
+    throw_config_error("{}: tool_version: '{}' made this data set and '{}' is running, whose scenes may differ",
+                       config_path(folder), config.tool_version, tool_version());
+}
+
 DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& config)
-    : folder_(make_folder(folder)),
+    : folder_(folder),
       lock_(folder_),
       config_(settle_config(folder_, config)),
       store_(folder_, config_.output),
@@ -77,12 +75,12 @@ DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& con
 
 DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& config, const jobs::Shard& shard,
                              Part part)
-    : folder_(make_folder(folder)),
+    : folder_(folder),
       part_(list_scenes(config, shard)),
       lock_(folder_, jobs::FolderLock::Kind::part),
       config_(settle_config(folder_, config)),
       store_(folder_, config_.output),
-      pack_lock_(part == Part::packed ? std::make_unique<jobs::FolderLock>(make_folder(parts_folder(folder_)), shard)
+      pack_lock_(part == Part::packed ? std::make_unique<jobs::FolderLock>(folder_.make_inner(kPartsFolder), shard)
                                       : nullptr),
       manifest_(folder_, shard, *part_) {
   remove_unfinished();
@@ -98,6 +96,8 @@ DatasetFolder::~DatasetFolder() try {
   if (!part_) remove_unfinished();
 } catch (const IoError&) {  // the next run tries again
 }
+
+void DatasetFolder::restore_config() { create_atomically(folder_.make_entry(kConfigFile), format_config(config_)); }
 
 bool DatasetFolder::is_complete(const std::string& scene_name) const {
   const ManifestRecord* record = manifest_.find(scene_name);

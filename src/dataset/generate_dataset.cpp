@@ -55,6 +55,14 @@ void record_scene(DatasetFolder& folder, const jobs::JobOutcome& outcome) {
   folder.manifest().append(record);
 }
 
+/// Scenes that were made and are not there: somebody removed them meanwhile.
+void add_lost(GenerationReport& report, const DatasetFolder& folder, const std::vector<SceneId>& scenes,
+              const std::vector<std::size_t>& made) {
+  for (const std::size_t i : made)
+    if (!folder.is_complete(scenes[i].name()))
+      report.failed.push_back(fmt::format("{}: was removed after it was made", scenes[i].name()));
+}
+
 }  // namespace
 
 std::size_t GenerationReport::rejects_total() const {
@@ -74,8 +82,10 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
   std::optional<ScenePacker> packer;
   if (!pack.empty()) packer.emplace(folder, scenes, pack);
   jobs::Progress progress(missing.size(), "scenes", progress_style);
+  std::vector<std::size_t> made;
   const jobs::PoolEvents events{.on_finished =
                                     [&](const jobs::JobOutcome& outcome) {
+                                      if (outcome.succeeded) made.push_back(outcome.job);
                                       if (outcome.succeeded) record_scene(folder, outcome);
                                       else report.failed.push_back(describe_failure(scenes[outcome.job], outcome));
                                       if (packer && outcome.succeeded) packer->add(outcome.job);
@@ -95,6 +105,8 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
 
   const jobs::PoolReport pool = jobs::run_jobs(missing, options, work, events);
   if (packer) packer->finish(pool.signal == 0);
+  folder.restore_config();
+  add_lost(report, folder, scenes, made);
   report.signal = pool.signal;
   report.made = pool.succeeded;
   report.seconds = seconds_since(start);

@@ -1,14 +1,10 @@
 #include "tubebin/dataset/manifest.hpp"
 
-#include <fcntl.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "core/file_descriptor.hpp"
+#include "core/json_reader.hpp"
 #include "jobs/append_line.hpp"
 #include "tubebin/core/atomic_file.hpp"
 
@@ -41,20 +37,17 @@ std::string id_of(const std::string& line) {
 std::vector<std::string> list_parts(const std::string& folder) {
   std::vector<std::string> parts;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(parts_folder(folder), error))
+  for (const auto& entry : std::filesystem::directory_iterator(folder + "/" + kPartsFolder, error))
     if (entry.path().extension() == ".jsonl") parts.push_back(entry.path().string());
   std::sort(parts.begin(), parts.end());
   return parts;
 }
 
 /// A new file that no other process writes to, whatever its host.
-std::string make_part(const std::string& folder, const std::string& part) {
-  std::filesystem::create_directories(parts_folder(folder));
+ConfinedPath make_part(const OutputFolder& folder, const std::string& part) {
   for (int number = 0;; ++number) {
-    std::string path = fmt::format("{}/{}.{}-{}.jsonl", parts_folder(folder), part, process_name(), number);
-    const FileDescriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (file.get() >= 0) return path;
-    if (errno != EEXIST) throw_io_error("{}: cannot be written: {}", path, std::strerror(errno));
+    const ConfinedPath name = ConfinedPath(kPartsFolder) / fmt::format("{}.{}-{}.jsonl", part, process_name(), number);
+    if (create_atomically(folder.make_entry(name), "")) return name;
   }
 }
 
@@ -65,19 +58,19 @@ std::string format_manifest_record(const ManifestRecord& record) {
   for (const jobs::FailedAttempt& attempt : record.rejected)
     rejected.push_back({{"attempt", attempt.attempt}, {"reason", attempt.reason}, {"detail", attempt.detail}});
   Json files = Json::object();
-  for (const auto& [name, file] : record.files) files[name] = {{"bytes", file.bytes}, {"xxh128", file.xxh128}};
-  Json json = {{"id", record.id},      {"tubes", record.tubes},     {"seed", record.seed},
-               {"rejected", rejected}, {"seconds", record.seconds}, {"physics", to_json(record.physics)},
+  for (const auto& [name, file] : record.files) files[name.str()] = {{"bytes", file.bytes}, {"xxh128", file.xxh128}};
+  Json json = {{"id", record.id.str()}, {"tubes", record.tubes},     {"seed", record.seed},
+               {"rejected", rejected},  {"seconds", record.seconds}, {"physics", to_json(record.physics)},
                {"files", files}};
-  if (!record.pack.empty()) json["pack"] = {{"file", record.pack}, {"end", record.pack_end}};
+  if (record.pack) json["pack"] = {{"file", record.pack->str()}, {"end", record.pack_end}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 ManifestRecord parse_manifest_record(const std::string& line) {
   ManifestRecord record;
   try {
-    const Json json = Json::parse(line);
-    record.id = json.at("id");
+    const Json json = parse_ordered_json(line, "not a record of a scene");
+    record.id = ConfinedPath::parse(json.at("id").get_ref<const std::string&>(), "id");
     record.tubes = json.at("tubes");
     record.seed = json.at("seed");
     for (const Json& attempt : json.at("rejected"))
@@ -85,9 +78,9 @@ ManifestRecord parse_manifest_record(const std::string& line) {
     record.seconds = json.at("seconds").get<std::map<std::string, double>>();
     record.physics = physics_from(json.at("physics"));
     for (const auto& [name, file] : json.at("files").items())
-      record.files[name] = {.bytes = file.at("bytes"), .xxh128 = file.at("xxh128")};
+      record.files[ConfinedPath::parse_name(name, "files")] = {.bytes = file.at("bytes"), .xxh128 = file.at("xxh128")};
     if (json.contains("pack")) {
-      record.pack = json["pack"].at("file");
+      record.pack = ConfinedPath::parse_name(json["pack"].at("file").get_ref<const std::string&>(), "pack/file");
       record.pack_end = json["pack"].at("end");
     }
   } catch (const nlohmann::json::exception& error) {
@@ -96,19 +89,22 @@ ManifestRecord parse_manifest_record(const std::string& line) {
   return record;
 }
 
-std::string parts_folder(const std::string& dataset) { return dataset + "/manifest.parts"; }
+Manifest::Manifest(const std::string& folder) { read_all(folder, nullptr); }
 
-Manifest::Manifest(const std::string& folder) : folder_(folder), path_(folder + "/manifest.jsonl") {
-  complete_bytes_ = read(path_, nullptr);
-  for (const std::string& part : list_parts(folder)) read(part, nullptr);
-}
+Manifest::Manifest(const OutputFolder& folder) : output_(folder) { read_all(folder.path(), nullptr); }
 
-Manifest::Manifest(const std::string& folder, const jobs::Shard& shard, const std::vector<SceneId>& scenes)
-    : folder_(folder), part_name_(shard.name()) {
+Manifest::Manifest(const OutputFolder& folder, const jobs::Shard& shard, const std::vector<SceneId>& scenes)
+    : output_(folder), part_name_(shard.name()) {
   std::set<std::string> wanted;
   for (const SceneId& id : scenes) wanted.insert(id.name());
-  read(folder + "/manifest.jsonl", &wanted);
-  for (const std::string& part : list_parts(folder)) read(part, &wanted);
+  read_all(folder.path(), &wanted);
+  file_ = {};
+  complete_bytes_ = 0;
+}
+
+void Manifest::read_all(const std::string& folder, const std::set<std::string>* wanted) {
+  complete_bytes_ = read(folder + "/" + kFile, wanted);
+  for (const std::string& part : list_parts(folder)) read(part, wanted);
 }
 
 std::size_t Manifest::read(const std::string& path, const std::set<std::string>* wanted) {
@@ -124,7 +120,7 @@ std::size_t Manifest::read(const std::string& path, const std::set<std::string>*
     try {
       ManifestRecord record = parse_manifest_record(line);
       ManifestRecord& known = records_[record.id];
-      if (known.pack.empty() || !record.pack.empty()) known = std::move(record);
+      if (!known.pack || record.pack) known = std::move(record);
     } catch (const IoError& error) {
       damaged_lines_.push_back(fmt::format("{}:{}: {}", path, line_number, error.what()));
     }
@@ -138,9 +134,8 @@ const ManifestRecord* Manifest::find(const std::string& id) const {
 }
 
 void Manifest::append(const ManifestRecord& record) {
-  if (path_.empty()) path_ = make_part(folder_, part_name_);
-  complete_bytes_ =
-      jobs::append_line(path_, part_name_.empty() ? O_CREAT : 0, complete_bytes_, format_manifest_record(record));
+  if (file_.is_folder_itself()) file_ = make_part(output_.value(), part_name_);
+  complete_bytes_ = jobs::append_line(output_.value(), file_, complete_bytes_, format_manifest_record(record));
   records_[record.id] = record;
 }
 
@@ -164,11 +159,9 @@ void Manifest::rewrite(const std::vector<SceneId>& scenes) {
 }
 
 void Manifest::replace_all(const std::string& text) {
-  write_file_atomically(folder_ + "/manifest.jsonl", text);
-  std::error_code error;
-  std::filesystem::remove_all(parts_folder(folder_), error);
-  if (error) throw_io_error("{}: cannot be removed: {}", parts_folder(folder_), error.message());
-  path_ = folder_ + "/manifest.jsonl";
+  file_ = kFile;
+  write_atomically(output_.value().make_entry(file_), text);
+  if (const FolderEntry parts = output_->find_entry(kPartsFolder); parts.folder.get() >= 0) remove_entry(parts);
   complete_bytes_ = text.size();
   damaged_lines_.clear();
 }

@@ -29,6 +29,7 @@ struct MergeSource {
 
 DatasetConfig unite_configs(const std::vector<std::string>& folders) {
   DatasetConfig united = read_dataset_config(folders.front());
+  require_own_version(united, folders.front());
   for (const std::string& folder : folders) {
     const DatasetConfig other = read_dataset_config(folder);
     if (const auto differing = differences(united, other); !differing.empty())
@@ -55,15 +56,18 @@ class Merge {
  public:
   Merge(DatasetFolder& output, const std::vector<std::string>& folders)
       : output_(output), scenes_(list_scenes(output.config())) {
-    sources_.push_back({output.store().folder(), &output.manifest(), scene::DatasetFiles(output.store().folder())});
-    for (const std::string& folder : folders) {
-      manifests_.push_back(std::make_unique<Manifest>(folder));
-      sources_.push_back({folder, manifests_.back().get(), scene::DatasetFiles(folder)});
+    const std::string& folder = output.store().folder().path();
+    sources_.push_back({folder, &output.manifest(), scene::DatasetFiles(folder)});
+    for (const std::string& part : folders) {
+      manifests_.push_back(std::make_unique<Manifest>(part));
+      sources_.push_back({part, manifests_.back().get(), scene::DatasetFiles(part)});
     }
   }
 
   MergeReport run(int jobs, jobs::Progress::Style progress_style) {
     report_.scenes = scenes_.size();
+    for (const MergeSource& source : sources_)
+      std::ranges::copy(source.manifest->damaged_lines(), std::back_inserter(report_.problems));
     std::vector<std::size_t> recorded;
     for (std::size_t i = 0; i < scenes_.size(); ++i) {
       if (is_recorded(scenes_[i].name())) recorded.push_back(i);
@@ -113,19 +117,21 @@ class Merge {
   }
 
   bool is_packed(std::size_t source, const std::string& scene) const {
-    return !sources_[source].manifest->find(scene)->pack.empty();
+    return sources_[source].manifest->find(scene)->pack.has_value();
   }
 
   std::function<void()> link_scene(std::size_t source, const std::string& scene) const {
-    std::map<std::string, std::string> links;
+    std::map<ConfinedPath, std::string> links;
     for (const auto& [name, file] : sources_[source].manifest->find(scene)->files)
-      links[name] = sources_[source].folder + "/" + scene + "/" + name;
-    return jobs::begin_linked_folder(output_.store().path(scene), links);
+      links[name] = fmt::format("{}/{}/{}", sources_[source].folder, scene, name);
+    return jobs::begin_linked_folder(output_.store().folder(), scene, links);
   }
 
   void take_outcome(const std::string& scene, const jobs::JobOutcome& outcome) {
     if (!outcome.succeeded) {
-      report_.problems.push_back(fmt::format("{}: could not be checked: {}", scene, outcome.failed.back().detail));
+      report_.problems.push_back(
+          fmt::format("{}: could not be checked: {}", scene, outcome.failed.back().for_people()));
+      report_.unchecked.push_back(scene);
       return;
     }
     const std::size_t end = outcome.text.find('\n');
@@ -142,12 +148,12 @@ class Merge {
 
   void record_taken(std::size_t source, const std::string& scene) {
     const ManifestRecord& record = *sources_[source].manifest->find(scene);
-    if (!record.pack.empty()) take_pack(source, record.pack);
+    if (record.pack) take_pack(source, *record.pack);
     output_.manifest().append(record);
   }
 
   /// Packs keep their names; parts of one call have different ones.
-  void take_pack(std::size_t source, const std::string& pack) {
+  void take_pack(std::size_t source, const ConfinedPath& pack) {
     const auto [owner, is_new] = pack_owner_.try_emplace(pack, source);
     const auto refuse = [&](std::size_t other) {
       throw_config_error("{} and {}: both have a pack {}, with different scenes; choose another output for one of them",
@@ -157,9 +163,8 @@ class Merge {
     if (!is_new) return;
     for (const auto& [scene, record] : output_.manifest().records())  // of an earlier merge, or of another pack?
       if (record.pack == pack && !has_in_pack(source, record)) refuse(0);
-    const std::string folder = scene::packs_folder(output_.store().folder());
-    fs::create_directories(folder);
-    jobs::link_file(scene::packs_folder(sources_[source].folder) + "/" + pack, folder + "/" + pack);
+    jobs::link_file(scene::packs_folder(sources_[source].folder) + "/" + pack.str(), output_.store().folder(),
+                    ConfinedPath("packs") / pack);
   }
 
   bool has_in_pack(std::size_t source, const ManifestRecord& record) const {
@@ -169,16 +174,16 @@ class Merge {
 
   void conclude() {
     std::sort(report_.problems.begin(), report_.problems.end());
-    const std::string folder = output_.store().folder();
+    const std::string& folder = output_.store().folder().path();
     const bool is_joined = sources_.size() > 1;
     if (is_joined && !damaged_.empty()) output_.manifest().rewrite_without({damaged_.begin(), damaged_.end()});
     // Parts may still be at work in a folder that isn't complete.
-    if (is_joined || (report_.missing.empty() && damaged_.empty())) output_.manifest().rewrite(scenes_);
+    if (is_joined || report_.complete == report_.scenes) output_.manifest().rewrite(scenes_);
     if (!damaged_.empty() && !is_joined)
-      report_.commands.push_back(fmt::format("generate_dataset --verify {} --repair", shell_word(folder)));
+      report_.commands.push_back(fmt::format("generate_dataset --verify {} --repair", shell_path(folder)));
     if (!report_.missing.empty() || (!damaged_.empty() && is_joined))
       report_.commands.push_back(
-          fmt::format("generate_dataset {} --output {}", shell_word(folder + "/config.yaml"), shell_word(folder)));
+          fmt::format("generate_dataset {} --output {}", shell_path(folder + "/config.yaml"), shell_path(folder)));
     if (is_joined) report_.missing.insert(report_.missing.end(), damaged_.begin(), damaged_.end());
   }
 
@@ -186,7 +191,7 @@ class Merge {
   std::vector<SceneId> scenes_;
   std::vector<std::unique_ptr<Manifest>> manifests_;
   std::vector<MergeSource> sources_;
-  std::map<std::string, std::size_t> pack_owner_;
+  std::map<ConfinedPath, std::size_t> pack_owner_;
   std::vector<std::string> damaged_;  ///< scenes that no source has sound
   MergeReport report_;
 };

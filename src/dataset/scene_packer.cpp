@@ -6,15 +6,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/scene/dataset_files.hpp"
 
 namespace tubebin::dataset {
 namespace {
-
-namespace fs = std::filesystem;
 
 // Waiting for the disk once for so many scenes costs little, and so many folders stand at most beside the tar.
 constexpr std::size_t kScenesPerSync = 32;
@@ -25,16 +22,16 @@ ScenePacker::ScenePacker(DatasetFolder& folder, const std::vector<SceneId>& scen
     : folder_(folder),
       scenes_(scenes),
       name_(name + ".tar"),
-      path_(scene::packs_folder(folder.store().folder()) + "/" + name_),
+      path_(scene::packs_folder(folder.store().folder().path()) + "/" + name_.str()),
       states_(scenes.size(), State::awaited) {
   for (const auto& [id, record] : folder.manifest().records())
     if (record.pack == name_) end_ = std::max(end_, record.pack_end);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const std::string id = scenes[i].name();
     if (!folder.is_complete(id)) continue;
-    const bool is_packed = !folder.manifest().find(id)->pack.empty();
+    const bool is_packed = folder.manifest().find(id)->pack.has_value();
     states_[i] = is_packed ? State::done : State::loose;
-    if (is_packed) fs::remove_all(folder.store().path(id));  // a kill came between packing and removing
+    if (is_packed) folder.store().remove(id);  // a kill came between packing and removing
   }
   pack_those_in_turn();
 }
@@ -67,8 +64,7 @@ void ScenePacker::pack_those_in_turn() {
 void ScenePacker::append(const SceneId& id) {
   ManifestRecord record = *folder_.manifest().find(id.name());
   for (const auto& [file, expected] : record.files)
-    write(format_tar_member(scene::packed_name(record.id, file),
-                            read_file(folder_.store().path(record.id) + "/" + file)));
+    write(format_tar_member(scene::packed_name(record.id, file), read_file(folder_.store().path(record.id / file))));
   record.pack = name_;
   record.pack_end = end_;
   unrecorded_.push_back(std::move(record));
@@ -80,7 +76,7 @@ void ScenePacker::flush() {
   if (fsync(file_.get()) != 0) throw_io_error("{}: cannot be written: {}", path_, std::strerror(errno));
   for (const ManifestRecord& record : unrecorded_) {
     folder_.manifest().append(record);
-    fs::remove_all(folder_.store().path(record.id));
+    folder_.store().remove(record.id);
   }
   unrecorded_.clear();
 }
@@ -88,9 +84,8 @@ void ScenePacker::flush() {
 void ScenePacker::write(std::string_view bytes) {
   const auto fail = [&] { throw_io_error("{}: cannot be written: {}", path_, std::strerror(errno)); };
   if (file_.get() < 0) {
-    fs::create_directories(fs::path(path_).parent_path());
-    file_ = FileDescriptor(open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
-    if (file_.get() < 0 || ftruncate(file_.get(), static_cast<off_t>(end_)) != 0) fail();
+    file_ = open_file(folder_.store().folder().make_entry(ConfinedPath("packs") / name_), O_WRONLY | O_CREAT);
+    if (ftruncate(file_.get(), static_cast<off_t>(end_)) != 0) fail();
   }
   while (!bytes.empty()) {
     const ssize_t written = pwrite(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(end_));

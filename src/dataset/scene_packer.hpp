@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/file_descriptor.hpp"
+#include "tubebin/core/file_descriptor.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
 
 namespace tubebin::dataset {
@@ -33,7 +33,7 @@ class ScenePacker {
 
   DatasetFolder& folder_;
   const std::vector<SceneId>& scenes_;
-  std::string name_;
+  ConfinedPath name_;
   std::string path_;
   std::vector<State> states_;
   std::size_t next_ = 0;

@@ -37,21 +37,21 @@ std::string SceneStore::cloud_name() const { return std::string("cloud") + exten
 
 std::string SceneStore::clean_cloud_name() const { return std::string("cloud_clean") + extension(options_.format); }
 
-std::function<std::map<std::string, FileRecord>()> SceneStore::begin_write(const std::string& scene_name,
-                                                                           const SceneContent& content) const {
+std::function<std::map<ConfinedPath, FileRecord>()> SceneStore::begin_write(const ConfinedPath& scene_name,
+                                                                            const SceneContent& content) const {
   std::map<std::string, std::string> files = content.images;
   files[cloud_name()] = cloud::format_cloud(content.cloud, options_.format);
   if (content.clean_cloud) files[clean_cloud_name()] = cloud::format_cloud(*content.clean_cloud, options_.format);
   files["scene.json"] = scene::format_scene_json(content.record);
   files["tubes.txt"] = scene::format_tubes_txt(content.record.scene.tubes);
 
-  const std::function<void()> finish = jobs::begin_whole_folder(path(scene_name), files);
+  const std::function<void()> finish = jobs::begin_whole_folder(folder_, scene_name, files);
   if (options_.format == cloud::CloudFormat::pcd_compressed) {
     check_reads_back(files[cloud_name()], content.cloud, path(scene_name) + "/" + cloud_name());
     if (content.clean_cloud)
       check_reads_back(files[clean_cloud_name()], *content.clean_cloud, path(scene_name) + "/" + clean_cloud_name());
   }
-  std::map<std::string, FileRecord> records;
+  std::map<ConfinedPath, FileRecord> records;
   for (const auto& [name, bytes] : files) records[name] = record_bytes(bytes);
   return [finish, records] {
     finish();
@@ -60,26 +60,32 @@ std::function<std::map<std::string, FileRecord>()> SceneStore::begin_write(const
 }
 
 bool SceneStore::has(const ManifestRecord& record) const {
-  if (!record.pack.empty()) {
+  if (record.pack) {
     std::error_code error;
-    const std::uintmax_t bytes = fs::file_size(scene::packs_folder(folder_) + "/" + record.pack, error);
+    const std::uintmax_t bytes = fs::file_size(scene::packs_folder(folder_.path()) + "/" + record.pack->str(), error);
     return !error && bytes >= record.pack_end;
   }
   return std::all_of(record.files.begin(), record.files.end(), [&](const auto& entry) {
     std::error_code error;
-    return fs::file_size(fs::path(path(record.id)) / entry.first, error) == entry.second.bytes && !error;
+    return fs::file_size(path(record.id / entry.first), error) == entry.second.bytes && !error;
   });
 }
 
+void SceneStore::remove(const ConfinedPath& scene_name) const {
+  if (const FolderEntry entry = folder_.find_entry(scene_name); entry.folder.get() >= 0) remove_entry(entry);
+}
+
 void SceneStore::remove_unfinished(const std::vector<SceneId>& scenes, Unfinished which) const {
-  std::map<fs::path, std::set<std::string>> names;
+  std::map<ConfinedPath, std::set<std::string>> names;
   for (const SceneId& id : scenes) {
-    const fs::path scene = path(id.name());
-    names[scene.parent_path()].insert(scene.filename().string());
+    const ConfinedPath scene = id.name();
+    names[scene.parent()].insert(scene.name());
   }
   for (const auto& [parent, own] : names)
-    if (fs::is_directory(parent))
-      jobs::remove_unfinished_folders(parent.string(), which == Unfinished::only ? own : std::set<std::string>{});
+    jobs::remove_unfinished(folder_, parent, which == Unfinished::only ? own : std::set<std::string>{});
+  if (which == Unfinished::only) return;
+  for (const ConfinedPath& beside : {ConfinedPath(), ConfinedPath("packs"), ConfinedPath(kPartsFolder)})
+    jobs::remove_unfinished(folder_, beside);
 }
 
 }  // namespace tubebin::dataset

@@ -37,8 +37,9 @@ void add_outcome(VerificationReport& report, const SceneId& id, const jobs::JobO
 }  // namespace
 
 VerificationReport verify_dataset(const std::string& folder, int jobs, jobs::Progress::Style progress_style) {
-  const jobs::FolderLock lock(folder, jobs::FolderLock::Kind::shared);
   const DatasetConfig config = read_dataset_config(folder);
+  require_own_version(config, folder);
+  const jobs::FolderLock lock(folder);
   const Manifest manifest(folder);
   const scene::DatasetFiles files(folder);
   VerificationReport report;

@@ -240,17 +240,19 @@ void check_content(const scene::DatasetFiles& files, const DatasetConfig& config
 
 std::vector<std::string> check_files(const scene::DatasetFiles& files, const ManifestRecord& record) {
   Problems problems;
-  for (const auto& [name, expected] : record.files) {
-    if (!files.has(record.id, name)) {
-      problems.push_back(name + " is missing");
-      continue;
+  for (const auto& [name, expected] : record.files) try {
+      if (!files.has(record.id, name)) {
+        problems.push_back(name.str() + " is missing");
+        continue;
+      }
+      const FileRecord found = record_bytes(files.read(record.id, name));
+      if (found.bytes != expected.bytes)
+        problems.push_back(fmt::format("{} has {} bytes, recorded are {}", name, found.bytes, expected.bytes));
+      else if (found.xxh128 != expected.xxh128)
+        problems.push_back(fmt::format("{} has hash {}, recorded is {}", name, found.xxh128, expected.xxh128));
+    } catch (const IoError& error) {
+      problems.emplace_back(error.what());
     }
-    const FileRecord found = record_bytes(files.read(record.id, name));
-    if (found.bytes != expected.bytes)
-      problems.push_back(fmt::format("{} has {} bytes, recorded are {}", name, found.bytes, expected.bytes));
-    else if (found.xxh128 != expected.xxh128)
-      problems.push_back(fmt::format("{} has hash {}, recorded is {}", name, found.xxh128, expected.xxh128));
-  }
   return problems;
 }
 

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/json_reader.hpp"
 #include "export/formats.hpp"
 #include "export/scene_image.hpp"
 #include "export/tube_mesh_file.hpp"
@@ -129,8 +130,8 @@ class BopFormat : public ExportFormat {
     Json models = Json::object(), targets = Json::array();
     for (const SceneEntry& entry : entries) {
       const std::string folder = output + "/" + scene_path(entry) + "/";
-      models.update(Json::parse(read_file(folder + kModelsInfo)));
-      const Json infos = Json::parse(read_file(folder + kGroundTruthInfo)).at("0");
+      models.update(read_json(folder + kModelsInfo));
+      const Json infos = read_json(folder + kGroundTruthInfo).at("0");
       for (int k = 0; k < entry.tubes; ++k)
         if (infos.at(static_cast<std::size_t>(k)).at("visib_fract").get<double>() >= kTargetVisibility)
           targets.push_back(
@@ -145,7 +146,7 @@ class BopFormat : public ExportFormat {
  private:
   /// The camera of all scenes of a data set.
   static Json sensor_json(const std::string& scene) {
-    const Json camera = Json::parse(read_file(scene + "/" + kSceneCamera)).at("0");
+    const Json camera = read_json(scene + "/" + kSceneCamera).at("0");
     const Json& k = camera.at("cam_K");
     return {{"cx", k[2]},
             {"cy", k[5]},

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "core/json_reader.hpp"
 #include "export/formats.hpp"
 #include "export/scene_image.hpp"
 #include "tubebin/core/atomic_file.hpp"
@@ -83,7 +84,7 @@ class CocoFormat : public ExportFormat {
   Files summarize(const std::vector<SceneEntry>& entries, const std::string& output) const override {
     Json images = Json::array(), annotations = Json::array();
     for (const SceneEntry& entry : entries) {
-      const Json scene = Json::parse(read_file(output + "/" + scene_path(entry) + "/" + kAnnotations));
+      const Json scene = read_json(output + "/" + scene_path(entry) + "/" + kAnnotations);
       images.insert(images.end(), scene.at("images").begin(), scene.at("images").end());
       annotations.insert(annotations.end(), scene.at("annotations").begin(), scene.at("annotations").end());
     }

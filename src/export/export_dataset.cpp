@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/json_reader.hpp"
 #include "export/formats.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
@@ -19,6 +20,7 @@
 #include "tubebin/jobs/atomic_folder.hpp"
 #include "tubebin/jobs/worker_pool.hpp"
 #include "tubebin/results/cloud_files.hpp"
+#include "tubebin/scene/input_hashes.hpp"
 
 namespace tubebin::exports {
 namespace {
@@ -26,6 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kIndex = "index.json";
 constexpr const char* kIndexFormat = "tubebin export 1";
 
 /// The settings of the drop, which Gazebo goes on with; of a data set without a configuration, the defaults.
@@ -48,7 +51,7 @@ const std::map<std::string, std::function<std::unique_ptr<ExportFormat>(const st
 struct IndexLine {
   std::string scene;
   std::size_t tubes = 0;
-  std::string scene_json_xxh128;
+  scene::InputHashes made_from;
 
   friend bool operator==(const IndexLine&, const IndexLine&) = default;
 };
@@ -58,7 +61,7 @@ struct Source {
   results::CloudFile cloud;
 };
 
-std::vector<Source> list_sources(const scene::DatasetFiles& dataset) {
+std::vector<Source> list_sources(const scene::DatasetFiles& dataset, const scene::DatasetHashes& hashes) {
   if (!fs::exists(dataset.dataset()))
     throw_io_error("{}: is no data set: not a folder and not a pack", dataset.dataset());
   std::vector<Source> sources;
@@ -67,13 +70,13 @@ std::vector<Source> list_sources(const scene::DatasetFiles& dataset) {
     const std::string text = dataset.read(cloud.scene, "scene.json");
     const std::size_t tubes =
         scene::parse_scene_json(text, dataset.place(cloud.scene, "scene.json")).scene.tubes.size();
-    sources.push_back({{cloud.scene, tubes, record_bytes(text).xxh128}, cloud});
+    sources.push_back({{cloud.scene, tubes, hashes.of(cloud.scene)}, cloud});
   }
   return sources;
 }
 
 std::vector<IndexLine> read_index(const std::string& path, const std::string& format) try {
-  const Json index = Json::parse(read_file(path));
+  const Json index = parse_ordered_json(read_file(path), path);
   const auto expect = [&](const char* key, const std::string& wanted) {
     if (const std::string held = index.at(key); held != wanted)
       throw_config_error("{}: this export has {} {}, not {}; choose another --output", path, key, held, wanted);
@@ -83,7 +86,9 @@ std::vector<IndexLine> read_index(const std::string& path, const std::string& fo
   expect("tool_version", tool_version());
   std::vector<IndexLine> lines;
   for (const Json& scene : index.at("scenes"))
-    lines.push_back({scene.at("scene"), scene.at("tubes"), scene.at("scene_json_xxh128")});
+    lines.push_back({ConfinedPath::parse(scene.at("scene").get_ref<const std::string&>(), path),
+                     scene.at("tubes"),
+                     {.cloud_xxh128 = scene.at("cloud_xxh128"), .scene_json_xxh128 = scene.at("scene_json_xxh128")}});
   return lines;
 } catch (const Json::exception& error) {
   throw_io_error("{}: is no index of an export: {}", path, error.what());
@@ -94,7 +99,8 @@ std::string format_index(const std::vector<Source>& sources, const std::string& 
   for (const Source& source : sources)
     scenes.push_back({{"scene", source.line.scene},
                       {"tubes", source.line.tubes},
-                      {"scene_json_xxh128", source.line.scene_json_xxh128}});
+                      {"scene_json_xxh128", source.line.made_from.scene_json_xxh128},
+                      {"cloud_xxh128", source.line.made_from.cloud_xxh128}});
   return Json{{"format", kIndexFormat}, {"export", format}, {"tool_version", tool_version()}, {"scenes", scenes}}.dump(
              1) +
          "\n";
@@ -120,19 +126,18 @@ std::vector<Source> continue_index(const std::string& path, const std::vector<In
 void refuse_if_no_export(const std::string& output) {
   if (!fs::exists(output) || fs::exists(output + "/index.json")) return;
   for (const fs::directory_entry& entry : fs::directory_iterator(output))
-    if (const std::string name = entry.path().filename(); !name.starts_with('.') && !name.starts_with("index.json."))
+    if (const std::string name = entry.path().filename(); !name.starts_with('.'))
       throw_config_error("{}: holds files, but no export (index.json is missing); choose a new or empty folder",
                          output);
 }
 
 /// Writes the index that says what the output is made from, and returns the scenes in its order.
-std::vector<Source> settle_index(const scene::DatasetFiles& dataset, const ExportOptions& options) {
-  const std::string path = options.output + "/index.json";
-  std::vector<Source> sources = list_sources(dataset);
-  if (fs::exists(path)) {
-    sources = continue_index(path, read_index(path, options.format), std::move(sources));
-  }
-  write_file_atomically(path, format_index(sources, options.format));
+std::vector<Source> settle_index(const scene::DatasetFiles& dataset, const scene::DatasetHashes& hashes,
+                                 const OutputFolder& output, const std::string& format) {
+  const std::string path = output.place(kIndex);
+  std::vector<Source> sources = list_sources(dataset, hashes);
+  if (fs::exists(path)) sources = continue_index(path, read_index(path, format), std::move(sources));
+  write_atomically(output.make_entry(kIndex), format_index(sources, format));
   return sources;
 }
 
@@ -147,44 +152,42 @@ std::vector<SceneEntry> number_scenes(const std::vector<Source>& sources) {
   return entries;
 }
 
-void write_below(const std::string& output, const Files& files) {
-  for (const auto& [name, bytes] : files) {
-    const std::string path = output + "/" + name;
-    fs::create_directories(fs::path(path).parent_path());
-    write_file_atomically(path, bytes);
-  }
+void write_below(const OutputFolder& output, const Files& files) {
+  for (const auto& [name, bytes] : files) write_atomically(output.make_entry(name), bytes);
 }
 
 /// In a worker process.
 jobs::AttemptResult export_one(const ExportFormat& format, const scene::DatasetFiles& dataset,
-                               const std::string& output, const Source& source, const SceneEntry& entry) {
+                               const scene::DatasetHashes& hashes, const OutputFolder& output, const Source& source,
+                               const SceneEntry& entry) {
   SceneFiles files;
   try {
     const auto& [scene, cloud] = source.cloud;
-    files = format.export_scene(
-        {entry, scene::parse_scene_json(dataset.read(scene, "scene.json"), dataset.place(scene, "scene.json")),
-         cloud::parse_cloud(dataset.read(scene, cloud), dataset.place(scene, cloud))});
+    const std::string bytes = dataset.read(scene, cloud), text = dataset.read(scene, "scene.json");
+    hashes.require_recorded(scene, {record_bytes(bytes).xxh128, record_bytes(text).xxh128});
+    scene::SceneRecord record = scene::parse_scene_json(text, dataset.place(scene, "scene.json"));
+    scene::require_id(record, scene, dataset.place(scene, "scene.json"));
+    files = format.export_scene({entry, std::move(record), cloud::parse_cloud(bytes, dataset.place(scene, cloud))});
   } catch (const IoError& error) {
     return jobs::failed_attempt("unreadable", error.what());  // this scene's fault: the others go on
   }
   write_below(output, files.beside);
-  const std::string path = output + "/" + format.scene_path(entry);
+  const ConfinedPath path = format.scene_path(entry);
   if (const auto alone = files.scene.find(""); alone != files.scene.end()) {
-    fs::create_directories(fs::path(path).parent_path());
-    write_file_atomically(path, alone->second);
+    write_atomically(output.make_entry(path), alone->second);
     return jobs::successful_attempt("");
   }
-  return jobs::successful_attempt([finish = jobs::begin_whole_folder(path, files.scene)] {
+  return jobs::successful_attempt([finish = jobs::begin_whole_folder(output, path, files.scene)] {
     finish();
     return std::string();
   });
 }
 
-void remove_unfinished(const std::string& output) {
-  std::vector<fs::path> unfinished;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(output))
-    if (entry.is_directory() && jobs::is_unfinished_folder(entry.path().string())) unfinished.push_back(entry.path());
-  for (const fs::path& path : unfinished) fs::remove_all(path);
+/// What killed runs left, in all folders that scenes and the files beside them go to.
+void remove_all_unfinished(const OutputFolder& output, const ConfinedPath& folder = {}) {
+  jobs::remove_unfinished(output, folder);
+  for (const std::string& name : names_in(output.open(folder)))
+    if (!name.starts_with('.') && output.has_folder(folder / name)) remove_all_unfinished(output, folder / name);
 }
 
 }  // namespace
@@ -202,41 +205,47 @@ ExportReport export_dataset(const ExportOptions& options, jobs::Progress::Style 
     throw_config_error("--format {}: unknown; one of {}", options.format, fmt::join(export_format_names(), ", "));
   refuse_if_no_export(options.output);
   const scene::DatasetFiles dataset(options.dataset);
-  if (!fs::exists(options.output)) list_sources(dataset);  // leaves no folder where there is nothing to export
-  fs::create_directories(options.output);
-  const jobs::FolderLock lock(options.output);
-  const std::vector<Source> sources = settle_index(dataset, options);
+  const scene::DatasetHashes hashes(dataset);
+  if (!fs::exists(options.output)) list_sources(dataset, hashes);  // leaves no folder where there is nothing to export
+  const OutputFolder output(options.output);
+  const jobs::FolderLock lock(output);
+  const std::vector<Source> sources = settle_index(dataset, hashes, output, options.format);
   const std::vector<SceneEntry> entries = number_scenes(sources);
   const std::unique_ptr<ExportFormat> format = known->second(options.dataset);
-  remove_unfinished(options.output);
+  remove_all_unfinished(output);
 
   const auto is_complete = [&](const SceneEntry& entry) {
-    return fs::exists(options.output + "/" + format->scene_path(entry));
+    const ConfinedPath path = format->scene_path(entry);
+    return output.has_file(path) || output.has_folder(path);
   };
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < entries.size(); ++i)
     if (!is_complete(entries[i])) missing.push_back(i);
   ExportReport report{.scenes = entries.size(), .complete_before = entries.size() - missing.size(), .failed = {}};
   jobs::Progress progress(missing.size(), "scenes", progress_style);
+  std::vector<std::size_t> made;
   const jobs::PoolEvents events{
       .on_finished =
           [&](const jobs::JobOutcome& outcome) {
             progress.count_done();
-            if (outcome.succeeded) return;
+            if (outcome.succeeded) return made.push_back(outcome.job);
             const jobs::FailedAttempt& last = outcome.failed.back();
             report.failed.push_back(fmt::format("{}: {}", entries[outcome.job].name, last.for_people()));
           },
       .on_tick = [&] { progress.show(); }};
   const jobs::PoolReport pool = jobs::run_jobs(
       missing, {.workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit},
-      [&](std::size_t job, int) { return export_one(*format, dataset, options.output, sources[job], entries[job]); },
+      [&](std::size_t job, int) { return export_one(*format, dataset, hashes, output, sources[job], entries[job]); },
       events);
+  for (const std::size_t i : made)
+    if (!is_complete(entries[i])) report.failed.push_back(entries[i].name + ": was removed after it was made");
   report.made = pool.succeeded;
   report.signal = pool.signal;
   if (report.signal == 0) {
+    write_atomically(output.make_entry(kIndex), format_index(sources, options.format));  // should it be gone
     std::vector<SceneEntry> complete;
     std::ranges::copy_if(entries, std::back_inserter(complete), is_complete);
-    write_below(options.output, format->summarize(complete, options.output));
+    write_below(output, format->summarize(complete, options.output));
   }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;

@@ -7,7 +7,6 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <optional>
 #include <thread>
 
@@ -43,42 +42,40 @@ void write_holder(int descriptor) {
   if (ftruncate(descriptor, 0) == 0 && pwrite(descriptor, text.data(), text.size(), 0) < 0) return;
 }
 
-/// A descriptor of the lock file, made if it isn't there.
-int open_lock_file(const std::string& path) {
-  const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0) throw_io_error("{}: cannot be written: {}", path, std::strerror(errno));
-  return descriptor;
+/// Locks the file, or says who has it.
+std::optional<std::string> lock_or_tell(const FileDescriptor& file, FolderLock::Kind kind) {
+  if (!try_to_lock(file.get(), kind)) return holder(file.get());
+  if (kind == FolderLock::Kind::exclusive) write_holder(file.get());
+  return std::nullopt;
 }
 
-/// Locks the file, or closes it and says who has it.
-std::optional<std::string> lock_or_close(int descriptor, FolderLock::Kind kind) {
-  if (try_to_lock(descriptor, kind)) {
-    if (kind == FolderLock::Kind::exclusive) write_holder(descriptor);
-    return std::nullopt;
-  }
-  const std::string other = holder(descriptor);
-  close(descriptor);
-  return other;
-}
+constexpr int kLockFile = O_RDWR | O_CREAT;
 
 }  // namespace
 
-FolderLock::FolderLock(const std::string& folder, Kind kind) {
-  const std::string path = folder + "/.lock";
-  descriptor_ = kind == Kind::shared ? open(path.c_str(), O_RDONLY | O_CLOEXEC) : open_lock_file(path);
-  if (descriptor_ < 0) return;  // nobody ever locked it
-  if (const auto other = lock_or_close(descriptor_, kind))
+FolderLock::FolderLock(const OutputFolder& folder, Kind kind)
+    : file_(open_file({folder.folder().duplicate(), ".lock", folder.path() + "/.lock"}, kLockFile)) {
+  require_free(folder.path(), kind);
+}
+
+FolderLock::FolderLock(const std::string& folder) {
+  const FolderEntry entry = entry_of(folder + "/.lock");
+  if (faccessat(entry.folder.get(), entry.name.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) != 0)
+    return;  // nobody ever locked it
+  file_ = open_file(entry, O_RDONLY);
+  require_free(folder, Kind::shared);
+}
+
+FolderLock::FolderLock(const OutputFolder& folder, const Shard& packed_part)
+    : file_(open_file(folder.make_entry(packed_part.name() + ".lock"), kLockFile)) {
+  if (const auto other = lock_or_tell(file_, Kind::exclusive))
+    throw_io_error("{}: {} is packing part {}, and two can't; wait for its end", folder.path(), *other,
+                   packed_part.name());
+}
+
+void FolderLock::require_free(const std::string& folder, Kind kind) const {
+  if (const auto other = lock_or_tell(file_, kind))
     throw_config_error("{}: {} is writing to this folder; wait for its end or choose another folder", folder, *other);
-}
-
-FolderLock::FolderLock(const std::string& folder, const Shard& packed_part)
-    : descriptor_(open_lock_file(fmt::format("{}/{}.lock", folder, packed_part.name()))) {
-  if (const auto other = lock_or_close(descriptor_, Kind::exclusive))
-    throw_io_error("{}: {} is packing part {}, and two can't; wait for its end", folder, *other, packed_part.name());
-}
-
-FolderLock::~FolderLock() {
-  if (descriptor_ >= 0) close(descriptor_);
 }
 
 }  // namespace tubebin::jobs

@@ -68,12 +68,16 @@ class RunningClock {
   double seconds_ = 0.0;
 };
 
+struct Job : JobOutcome {
+  int kills = 0;  ///< of the current attempt, from outside
+};
+
 struct Worker {
   std::unique_ptr<WorkerProcess> process;
-  std::optional<JobOutcome> job;  ///< in work
-  int kills = 0;                  ///< of the current attempt, from outside
+  std::optional<Job> job;  ///< in work
   double attempt_start = 0.0;
-  std::optional<JobOutcome> finishing;  ///< computed, and not done until its `finish` has returned
+  std::optional<Job> finishing;  ///< computed, and not done until its `finish` has returned
+  double finish_start = 0.0;
 
   bool busy() const { return job || finishing; }
 };
@@ -86,7 +90,7 @@ class Pool {
         events_(events),
         workers_(std::min(jobs.size(), static_cast<std::size_t>(std::max(options.workers, 1)))) {
     for (const std::size_t job : jobs)
-      waiting_.push_back({.job = job, .succeeded = false, .text = "", .failed = {}, .seconds = 0.0});
+      waiting_.push_back({{.job = job, .succeeded = false, .text = "", .failed = {}, .seconds = 0.0}});
   }
 
   PoolReport run() {
@@ -127,7 +131,6 @@ class Pool {
     if (!waiting_.empty() && !stopping()) {
       worker.job = std::move(waiting_.front());
       waiting_.pop_front();
-      worker.kills = 0;
       return start_attempt(worker);
     }
     if (!worker.finishing) worker.process.reset();
@@ -171,6 +174,7 @@ class Pool {
   void finish_beside_next(Worker& worker) {
     worker.job->seconds += clock_.now() - worker.attempt_start;
     worker.finishing = std::exchange(worker.job, std::nullopt);
+    worker.finish_start = clock_.now();
     give_next_job(worker);
   }
 
@@ -191,7 +195,13 @@ class Pool {
                           signal != 0
                               ? fmt::format("its process was ended by signal {} ({})", signal, strsignal(signal))
                               : "its process ended by itself");
-    if (++worker.kills >= kKillsMax)
+    make_again_after_kill(worker);
+  }
+
+  /// What was in work is as good as before, and made again as it was.
+  void make_again_after_kill(Worker& worker) {
+    Job& current = worker.job ? *worker.job : *worker.finishing;
+    if (++current.kills >= kKillsMax)
       return lose_process(worker, "killed", fmt::format("its process was killed {} times", kKillsMax));
     worker.process.reset();
     make_again(worker.finishing);
@@ -201,8 +211,12 @@ class Pool {
   }
 
   void enforce_time_limit(Worker& worker) {
-    if (worker.job && clock_.now() - worker.attempt_start > options_.attempt_time_limit)
+    const double now = clock_.now();
+    if (worker.job && now - worker.attempt_start > options_.attempt_time_limit)
       lose_process(worker, "timeout", fmt::format("no result after {} s", options_.attempt_time_limit));
+    // A process that was stopped, or a disk that hangs: not the attempt's fault.
+    else if (worker.finishing && !worker.job && now - worker.finish_start > options_.attempt_time_limit)
+      make_again_after_kill(worker);
   }
 
   /// The process ended, or must end, by its attempt's fault. A job that it was finishing is innocent, unless it was
@@ -219,10 +233,10 @@ class Pool {
   }
 
   void fail_attempt(Worker& worker, const std::string& reason, const std::string& detail) {
-    JobOutcome& job = *worker.job;
+    Job& job = *worker.job;
     job.seconds += clock_.now() - worker.attempt_start;
     job.failed.push_back({static_cast<int>(job.failed.size()), reason, detail});
-    worker.kills = 0;
+    job.kills = 0;
     events_.on_failed_attempt(job.job, job.failed.back());
     if (static_cast<int>(job.failed.size()) >= options_.attempts_max) return give_up(worker);
     if (stopping()) return make_again(worker.job);
@@ -237,13 +251,13 @@ class Pool {
   }
 
   /// The job goes back to those that wait, its current attempt to be made once more.
-  void make_again(std::optional<JobOutcome>& job) {
+  void make_again(std::optional<Job>& job) {
     if (job) waiting_.push_front(*std::exchange(job, std::nullopt));
   }
 
   StopSignals signals_;
   RunningClock clock_;
-  std::deque<JobOutcome> waiting_;
+  std::deque<Job> waiting_;
   PoolOptions options_;
   const Work& work_;
   const PoolEvents& events_;

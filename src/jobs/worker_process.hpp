@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/file_descriptor.hpp"
+#include "tubebin/core/file_descriptor.hpp"
 #include "tubebin/jobs/worker_pool.hpp"
 
 namespace tubebin::jobs {

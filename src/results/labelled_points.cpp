@@ -4,6 +4,7 @@
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/evaluation/cloud_pair.hpp"
+#include "tubebin/evaluation/filtered_truth.hpp"
 #include "tubebin/results/model_cloud.hpp"
 
 namespace tubebin::results {
@@ -22,11 +23,13 @@ std::optional<evaluation::LabelledPoints> kept_points(const evaluation::RunScore
   if (run.dataset.empty() || run.filtered.empty() || run.labeled.empty()) return std::nullopt;
   const scene::DatasetFiles dataset(run.dataset);
   const std::string cloud = dataset.cloud_of(run.key.scene);
-  cloud::Cloud filtered = !cloud.empty() && run.filtered == dataset.place(run.key.scene, cloud)
-                              ? cloud::parse_cloud(dataset.read(run.key.scene, cloud), run.filtered)
-                              : cloud::read_cloud(run.filtered);
+  if (cloud.empty()) return std::nullopt;
+  const std::string path = dataset.place(run.key.scene, cloud);
+  cloud::Cloud filtered = cloud::parse_cloud(dataset.read(run.key.scene, cloud), path);
   if (filtered.labels.empty()) return std::nullopt;
   filtered.colors.clear();
+  if (run.filtered != path)
+    filtered = evaluation::filtered_truth({filtered, path}, {cloud::read_cloud(run.filtered), run.filtered}).cloud;
   const cloud::Cloud labeled = cloud::read_cloud(run.labeled);
   const evaluation::PairedIds pairs = evaluation::pair_clouds({filtered, run.filtered}, {labeled, run.labeled});
   evaluation::LabelledPoints result;

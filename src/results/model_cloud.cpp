@@ -7,6 +7,7 @@
 
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/cloud/label_colors.hpp"
+#include "tubebin/core/file_record.hpp"
 
 namespace tubebin::results {
 namespace {
@@ -62,7 +63,7 @@ ModelConfig load_model_config(const std::string& path) {
 
 CloudToModel read_cloud_to_model(const std::string& path, double scale) {
   const auto start = std::chrono::steady_clock::now();
-  CloudToModel input{.path = path, .cloud = cloud::read_cloud(path, scale), .scene = std::nullopt};
+  CloudToModel input{.path = path, .cloud = cloud::read_cloud(path, scale), .scene = std::nullopt, .hashes = {}};
   if (const fs::path scene = fs::path(path).parent_path() / "scene.json"; fs::exists(scene))
     input.scene = scene::read_scene_json(scene.string());
   input.read_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -72,10 +73,17 @@ CloudToModel read_cloud_to_model(const std::string& path, double scale) {
 CloudToModel read_cloud_to_model(const scene::DatasetFiles& files, const CloudFile& cloud) {
   const auto start = std::chrono::steady_clock::now();
   const std::string path = files.place(cloud.scene, cloud.file);
-  CloudToModel input{.path = path, .cloud = cloud::parse_cloud(files.read(cloud.scene, cloud.file), path), .scene = {}};
-  if (files.has(cloud.scene, "scene.json"))
-    input.scene =
-        scene::parse_scene_json(files.read(cloud.scene, "scene.json"), files.place(cloud.scene, "scene.json"));
+  const std::string bytes = files.read(cloud.scene, cloud.file);
+  CloudToModel input{.path = path,
+                     .cloud = cloud::parse_cloud(bytes, path),
+                     .scene = {},
+                     .hashes = {.cloud_xxh128 = record_bytes(bytes).xxh128, .scene_json_xxh128 = ""}};
+  if (files.has(cloud.scene, "scene.json")) {
+    const std::string text = files.read(cloud.scene, "scene.json");
+    input.hashes.scene_json_xxh128 = record_bytes(text).xxh128;
+    input.scene = scene::parse_scene_json(text, files.place(cloud.scene, "scene.json"));
+    scene::require_id(*input.scene, cloud.scene, files.place(cloud.scene, "scene.json"));
+  }
   input.read_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return input;
 }

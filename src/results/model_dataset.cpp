@@ -8,8 +8,11 @@
 #include <numeric>
 #include <set>
 
+#include "core/json_reader.hpp"
+#include "results/result_files.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/utf8.hpp"
 #include "tubebin/core/version.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/evaluation/run_score.hpp"
@@ -25,6 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+constexpr const char* kIndex = "index.json";
 
 /// The data set's clouds, of each set and number of tubes the first ones alone where options say so.
 std::vector<CloudFile> choose_clouds(const scene::DatasetFiles& files, const BatchOptions& options) {
@@ -80,19 +85,29 @@ std::string format_result(const ModelingRun& run, const CloudToModel& input, con
                {"cloud_points", std::count_if(input.cloud.points.begin(), input.cloud.points.end(), cloud::is_finite)},
                {"filtered_points", result.labels.size()},
                {"labeled_points", result.labels.size() - static_cast<std::size_t>(unlabeled)},
-               {"model_tubes", result.tubes.size()}};
+               {"model_tubes", result.tubes.size()},
+               {"cloud_xxh128", input.hashes.cloud_xxh128},
+               {"scene_json_xxh128", input.hashes.scene_json_xxh128}};
   add_contingency(json, input, result);
   return json.dump() + "\n";
 }
 
+/// What all runs of a call read from and write to.
+struct Batch {
+  const scene::DatasetFiles& dataset;
+  scene::DatasetHashes hashes;
+  OutputFolder results;
+};
+
 /// In a worker process.
-jobs::AttemptResult do_run(const ModelingRun& run, const scene::DatasetFiles& dataset, const BatchOptions& options,
+jobs::AttemptResult do_run(const ModelingRun& run, const Batch& batch, const BatchOptions& options,
                            const ModelConfig& config) {
   CloudToModel input;
   modeling::ModelingResult result;
   ModelConfig own = run_config(config, run);
   try {
-    input = read_cloud_to_model(dataset, {run.scene, run.cloud});
+    input = read_cloud_to_model(batch.dataset, {run.scene, run.cloud});
+    batch.hashes.require_recorded(run.scene, input.hashes);
     result = model_cloud(input, own);
   } catch (const IoError& error) {
     return jobs::failed_attempt("unreadable", error.what());  // this cloud's fault: the others go on
@@ -107,10 +122,18 @@ jobs::AttemptResult do_run(const ModelingRun& run, const scene::DatasetFiles& da
         cloud::format_cloud(filtered_cloud(input.cloud, result), cloud::CloudFormat::pcd_compressed);
     files["labeled.pcd"] = cloud::format_cloud(labeled_cloud(input.cloud, result), cloud::CloudFormat::pcd_compressed);
   }
-  return jobs::successful_attempt([finish = jobs::begin_whole_folder(options.results + "/" + run.folder(), files)] {
+  return jobs::successful_attempt([finish = jobs::begin_whole_folder(batch.results, run.folder(), files)] {
     finish();
     return std::string();
   });
+}
+
+std::string relative_dataset(const BatchOptions& options) {
+  const std::string path = fs::relative(fs::absolute(options.dataset), fs::absolute(options.results)).string();
+  if (!is_utf8(path))
+    throw_io_error("{}: its path is no UTF-8 text, which {} needs; give the data set another name", options.dataset,
+                   kIndex);
+  return path;
 }
 
 std::string format_index(const BatchOptions& options, const ModelConfig& config, const std::vector<CloudFile>& clouds) {
@@ -120,7 +143,7 @@ std::string format_index(const BatchOptions& options, const ModelConfig& config,
   ModelConfig described = config;
   return Json{{"format", "tubebin results 1"},
               {"tool_version", tool_version()},
-              {"dataset", fs::relative(fs::absolute(options.dataset), fs::absolute(options.results)).string()},
+              {"dataset", relative_dataset(options)},
               {"methods", methods},
               {"ratios", options.ratios},
               {"seed", config.modeling.seed},
@@ -150,10 +173,9 @@ std::vector<CloudFile> deal_clouds(const std::vector<CloudFile>& all, const Batc
 
 /// Adds methods, ratios and scenes that the folder holds already; what the runs depend on must be the same.
 std::string merge_index(const std::string& path, const std::string& wanted_text) {
-  Json wanted = Json::parse(wanted_text);
-  Json held;
+  Json wanted = parse_ordered_json(wanted_text, path);
+  Json held = parse_ordered_json(read_file(path), path);
   try {
-    held = Json::parse(read_file(path));
     const auto without_run = [](Json options) {  // each run has its own method, ratio and seed
       options.erase("method");
       options["filtering"].erase("ratio");
@@ -178,16 +200,22 @@ std::string merge_index(const std::string& path, const std::string& wanted_text)
 }
 
 /// All parts of a call write the same index, whose scenes are those of the whole call.
-void settle_index(const BatchOptions& options, const ModelConfig& config, const std::vector<CloudFile>& clouds) {
-  const std::string path = options.results + "/index.json";
+void settle_index(const OutputFolder& results, const BatchOptions& options, const ModelConfig& config,
+                  const std::vector<CloudFile>& clouds) {
+  const std::string path = results.place(kIndex);
   const std::string wanted = format_index(options, config, clouds);
-  if (!fs::exists(path) && create_file_atomically(path, wanted)) return;
+  if (!fs::exists(path) && create_atomically(results.make_entry(kIndex), wanted)) return;
   const std::string merged = merge_index(path, wanted);
-  if (merged != read_file(path)) write_file_atomically(path, merged);
+  if (merged != read_file(path)) write_atomically(results.make_entry(kIndex), merged);
 }
 
-std::string failures_path(const BatchOptions& options) {
-  return options.results + (options.shard ? "/failures." + options.shard->name() + ".jsonl" : "/failures.jsonl");
+ConfinedPath failures_file(const BatchOptions& options) {
+  return options.shard ? "failures." + options.shard->name() + ".jsonl" : "failures.jsonl";
+}
+
+std::string format_failure(const ModelingRun& run, const std::string& why) {
+  return Json{{"scene", run.scene}, {"method", name_of(run.method)}, {"ratio", run.ratio}, {"error", why}}.dump(
+      -1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::vector<ModelingRun> list_runs(const BatchOptions& options, const std::vector<CloudFile>& clouds) {
@@ -198,17 +226,41 @@ std::vector<ModelingRun> list_runs(const BatchOptions& options, const std::vecto
   return runs;
 }
 
-bool has_run(const BatchOptions& options, const ModelingRun& run) {
-  return fs::exists(options.results + "/" + run.folder()) ||
-         std::ranges::any_of(options.other_results,
-                             [&](const std::string& other) { return fs::exists(other + "/" + run.folder()); });
-}
+/// Which runs one of the results folders has already, of the clouds as they are now.
+class CompleteRuns {
+ public:
+  CompleteRuns(const BatchOptions& options, const scene::DatasetHashes& hashes)
+      : folders_(options.other_results), hashes_(hashes) {
+    folders_.insert(folders_.begin(), options.results);
+  }
+
+  bool contains(const ModelingRun& run) {
+    return std::ranges::any_of(folders_, [&](const std::string& folder) {
+      const std::string path = fmt::format("{}/{}/result.json", folder, run.folder());
+      return fs::exists(path) && is_current(path, run);
+    });
+  }
+
+ private:
+  bool is_current(const std::string& path, const ModelingRun& run) try {
+    const auto known = hashes_of_scene_.find(run.scene);
+    const scene::InputHashes& now =
+        known != hashes_of_scene_.end() ? known->second : hashes_of_scene_[run.scene] = hashes_.of(run.scene);
+    return parse_run_counts(read_file(path), path).made_from == now;
+  } catch (const IoError&) {  // a result that can't be read is none
+    return false;
+  }
+
+  std::vector<std::string> folders_;
+  const scene::DatasetHashes& hashes_;
+  std::map<std::string, scene::InputHashes> hashes_of_scene_;
+};
 
 /// Removes what a killed run left of the runs that it was writing; at the end, too, what an interrupted one leaves.
 class NothingUnfinished {
  public:
-  NothingUnfinished(const BatchOptions& options, const std::vector<CloudFile>& clouds)
-      : results_(options.results), is_part_(options.shard.has_value()), clouds_(clouds) {
+  NothingUnfinished(const OutputFolder& results, bool is_part, const std::vector<CloudFile>& clouds)
+      : results_(results), is_part_(is_part), clouds_(clouds) {
     remove();
   }
   ~NothingUnfinished() try {
@@ -221,12 +273,11 @@ class NothingUnfinished {
 
  private:
   void remove() const {
-    for (const CloudFile& cloud : clouds_)
-      if (const std::string folder = results_ + "/" + cloud.scene; fs::is_directory(folder))
-        jobs::remove_unfinished_folders(folder);
+    for (const CloudFile& cloud : clouds_) jobs::remove_unfinished(results_, cloud.scene);
+    if (!is_part_) jobs::remove_unfinished(results_, {});
   }
 
-  std::string results_;
+  const OutputFolder& results_;
   bool is_part_;
   const std::vector<CloudFile>& clouds_;
 };
@@ -239,41 +290,43 @@ BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config
   const scene::DatasetFiles dataset(options.dataset);
   const auto all_clouds = choose_clouds(dataset, options);
   const auto clouds = deal_clouds(all_clouds, options);
-  fs::create_directories(options.results);
-  const jobs::FolderLock lock(options.results,
+  const Batch batch{dataset, scene::DatasetHashes(dataset), OutputFolder(options.results)};
+  const jobs::FolderLock lock(batch.results,
                               options.shard ? jobs::FolderLock::Kind::part : jobs::FolderLock::Kind::exclusive);
-  settle_index(options, config, all_clouds);
-  const NothingUnfinished nothing_unfinished(options, clouds);
+  settle_index(batch.results, options, config, all_clouds);
+  const NothingUnfinished nothing_unfinished(batch.results, options.shard.has_value(), clouds);
 
   const std::vector<ModelingRun> runs = list_runs(options, clouds);
+  CompleteRuns complete(options, batch.hashes);
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < runs.size(); ++i)
-    if (!has_run(options, runs[i])) missing.push_back(i);
+    if (!complete.contains(runs[i])) missing.push_back(i);
 
   BatchReport report{.runs = runs.size(), .complete_before = runs.size() - missing.size(), .failed = {}};
   jobs::Progress progress(missing.size(), "clouds", progress_style);
   std::string failures;
-  const jobs::PoolEvents events{
-      .on_finished =
-          [&](const jobs::JobOutcome& outcome) {
-            progress.count_done();
-            if (outcome.succeeded) return;
-            const ModelingRun& run = runs[outcome.job];
-            const jobs::FailedAttempt& last = outcome.failed.back();
-            const std::string why = last.for_people();
-            report.failed.push_back(fmt::format("{}: {}", run.folder(), why));
-            failures +=
-                Json{{"scene", run.scene}, {"method", name_of(run.method)}, {"ratio", run.ratio}, {"error", why}}
-                    .dump() +
-                "\n";
-          },
-      .on_tick = [&] { progress.show(); }};
+  const auto add_failure = [&](const ModelingRun& run, const std::string& why) {
+    report.failed.push_back(fmt::format("{}: {}", run.folder(), why));
+    failures += format_failure(run, why) + "\n";
+  };
+  std::vector<std::size_t> made;
+  const jobs::PoolEvents events{.on_finished =
+                                    [&](const jobs::JobOutcome& outcome) {
+                                      progress.count_done();
+                                      if (outcome.succeeded) made.push_back(outcome.job);
+                                      else add_failure(runs[outcome.job], outcome.failed.back().for_people());
+                                    },
+                                .on_tick = [&] { progress.show(); }};
   const jobs::PoolOptions pool_options{
       .workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit};
   const jobs::PoolReport pool = jobs::run_jobs(
-      missing, pool_options, [&](std::size_t job, int) { return do_run(runs[job], dataset, options, config); }, events);
-  if (!failures.empty()) write_file_atomically(failures_path(options), failures);
-  else fs::remove(failures_path(options));
+      missing, pool_options, [&](std::size_t job, int) { return do_run(runs[job], batch, options, config); }, events);
+  for (const std::size_t i : made)
+    if (!batch.results.has_folder(runs[i].folder())) add_failure(runs[i], "was removed after it was made");
+  settle_index(batch.results, options, config, all_clouds);
+  const FolderEntry failures_entry = batch.results.make_entry(failures_file(options));
+  if (!failures.empty()) write_atomically(failures_entry, failures);
+  else remove_entry(failures_entry);
   report.made = pool.succeeded;
   report.signal = pool.signal;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -6,6 +6,7 @@
 #include "evaluation/parallel.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/evaluation/filtered_truth.hpp"
 #include "tubebin/scene/dataset_files.hpp"
 #include "tubebin/scene/scene_json.hpp"
 
@@ -61,18 +62,18 @@ void keep_field(cloud::Cloud& cloud, evaluation::SegmentField field, const std::
 
 evaluation::RunScore score_scene(const scene::DatasetFiles& dataset, const std::string& scene,
                                  const PredictionFiles& files, evaluation::RunKey key, evaluation::SegmentField field) {
-  const std::string cloud = dataset.cloud_of(scene);
-  const std::string truth_path = files.filtered.empty() ? dataset.place(scene, cloud) : files.filtered;
-  const cloud::Cloud truth =
-      check_ground_truth(files.filtered.empty() ? cloud::parse_cloud(dataset.read(scene, cloud), truth_path)
-                                                : cloud::read_cloud(truth_path),
-                         truth_path);
+  const std::string cloud = dataset.cloud_of(scene), cloud_path = dataset.place(scene, cloud);
+  evaluation::FilteredTruth truth{
+      .cloud = check_ground_truth(cloud::parse_cloud(dataset.read(scene, cloud), cloud_path), cloud_path)};
+  if (!files.filtered.empty())
+    truth = evaluation::filtered_truth({truth.cloud, cloud_path}, {cloud::read_cloud(files.filtered), files.filtered});
+  const std::string& truth_path = files.filtered.empty() ? cloud_path : files.filtered;
   cloud::Cloud labeled;
   if (!files.labeled.empty()) {
     labeled = cloud::read_cloud(files.labeled);
     keep_field(labeled, field, files.labeled);
   }
-  const evaluation::PairedIds pairs = evaluation::pair_clouds({truth, truth_path}, {labeled, files.labeled});
+  const evaluation::PairedIds pairs = evaluation::pair_clouds({truth.cloud, truth_path}, {labeled, files.labeled});
   const evaluation::Contingency contingency = evaluation::count_pairs(pairs.truth, pairs.predicted, pairs.bin_id);
   const evaluation::Matching matching = evaluation::match_segments(
       contingency, files.filtered.empty() ? evaluation::BinPoints::left_out : evaluation::BinPoints::counted);
@@ -81,16 +82,36 @@ evaluation::RunScore score_scene(const scene::DatasetFiles& dataset, const std::
   if (dataset.has(scene, "scene.json")) {
     const scene::SceneRecord record =
         scene::parse_scene_json(dataset.read(scene, "scene.json"), dataset.place(scene, "scene.json"));
+    scene::require_id(record, scene, dataset.place(scene, "scene.json"));
     key.tubes = static_cast<int>(record.scene.tubes.size());
     scene_truth.emplace(record.scene);
   }
   evaluation::RunScore run =
       evaluation::score_run(key, contingency, matching, scene_truth ? &*scene_truth : nullptr, {});
   run.failed = files.labeled.empty();
+  if (!files.filtered.empty()) run.coverage = truth.coverage;
   if (scene_truth) run.dataset = dataset.dataset();
   run.filtered = truth_path;
   run.labeled = files.labeled;
   return run;
+}
+
+/// Of the scenes whose program told what it worked on; empty where none did.
+std::string coverage_note(const std::vector<evaluation::RunScore>& runs) {
+  std::size_t count = 0;
+  double sum = 0.0;
+  const evaluation::RunScore* least = nullptr;
+  for (const evaluation::RunScore& run : runs) {
+    if (!run.coverage) continue;
+    ++count;
+    sum += *run.coverage;
+    if (least == nullptr || *run.coverage < *least->coverage) least = &run;
+  }
+  if (count == 0) return "";
+  return fmt::format(
+      "{} scenes are scored on the points of their filtered clouds: {:.1f} % of the tubes' points on average, at least "
+      "{:.1f} % ({}); the rest counts neither as found nor as missed",
+      count, 100.0 * sum / static_cast<double>(count), 100.0 * *least->coverage, least->key.scene);
 }
 
 }  // namespace
@@ -122,6 +143,7 @@ evaluation::Evaluation score_predictions(const std::string& dataset_path, const 
       options.on_progress);
   for (std::size_t i = 0; i < scenes.size(); ++i)
     if (files[i].labeled.empty()) evaluation.missing.push_back(scenes[i]);
+  if (std::string note = coverage_note(evaluation.runs); !note.empty()) evaluation.notes.push_back(std::move(note));
   return evaluation;
 }
 

@@ -25,6 +25,8 @@ void check_format(const JsonPlace& root, const char* expected) {
   if (root.at("format").text() != expected) root.at("format").fail(fmt::format("\"{}\"", expected));
 }
 
+std::string optional_text(const JsonPlace& root, const char* key) { return root.has(key) ? root.at(key).text() : ""; }
+
 evaluation::Contingency read_contingency(const JsonPlace& root, const std::string& name) {
   if (!root.has("contingency"))
     throw_io_error("{}: /contingency: missing; the cloud has neither labels nor known colours, so it cannot be scored",
@@ -69,7 +71,8 @@ ResultsIndex parse_results_index(std::string_view text, const std::string& name)
   index.dataset = root.at("dataset").text();
   for (const JsonPlace& method : root.at("methods").elements()) index.methods.push_back(method.text());
   for (const JsonPlace& ratio : root.at("ratios").elements()) index.ratios.push_back(ratio.number());
-  for (const JsonPlace& scene : root.at("scenes").elements()) index.scenes.push_back(scene.text());
+  for (const JsonPlace& scene : root.at("scenes").elements())
+    index.scenes.push_back(ConfinedPath::parse(scene.text(), name + ": /scenes"));
   nlohmann::ordered_json configuration;
   for (const char* key : {"tool_version", "dataset", "seed", "options"}) {
     root.at(key);
@@ -95,6 +98,8 @@ RunCounts parse_run_counts(std::string_view text, const std::string& name) {
           .tubes = root.at("tubes").integer({0, 1000000}),
           .case_number = root.at("case").integer({0, 1000000000}),
           .model_tubes = root.at("model_tubes").integer({0, kMaxPoints}),
+          .made_from = {.cloud_xxh128 = optional_text(root, "cloud_xxh128"),
+                        .scene_json_xxh128 = optional_text(root, "scene_json_xxh128")},
           .contingency = read_contingency(root, name)};
 }
 

@@ -9,6 +9,7 @@
 
 #include "tubebin/evaluation/centerline.hpp"
 #include "tubebin/evaluation/contingency.hpp"
+#include "tubebin/scene/input_hashes.hpp"
 
 namespace tubebin::results {
 
@@ -29,6 +30,7 @@ struct RunCounts {
   int tubes = 0;
   int case_number = 0;
   int model_tubes = 0;
+  scene::InputHashes made_from;
   evaluation::Contingency contingency;
 };
 

@@ -39,9 +39,30 @@ std::map<std::string, std::string> read_failures(const std::string& folder) {
   return failures;
 }
 
-evaluation::RunScore read_run(const std::string& folder, evaluation::RunKey key, const evaluation::SceneTruth* truth) {
+/// A scene of the data set as it is now, and what is known about it.
+struct CurrentScene {
+  std::string place;
+  scene::InputHashes hashes;
+  std::optional<scene::SceneRecord> record;
+  std::optional<evaluation::SceneTruth> truth;
+};
+
+CurrentScene read_scene(const scene::DatasetFiles& dataset, const scene::DatasetHashes& hashes,
+                        const std::string& scene) {
+  CurrentScene current{dataset.dataset() + "/" + scene, hashes.of(scene), {}, {}};
+  if (!dataset.has(scene, "scene.json")) return current;
+  const std::string place = dataset.place(scene, "scene.json");
+  current.record = scene::parse_scene_json(dataset.read(scene, "scene.json"), place);
+  scene::require_id(*current.record, scene, place);
+  current.truth.emplace(current.record->scene);
+  return current;
+}
+
+evaluation::RunScore read_run(const std::string& folder, evaluation::RunKey key, const CurrentScene& scene) {
   const std::string path = folder + "/result.json";
   const RunCounts counts = parse_run_counts(read_file(path), path);
+  scene::require_same(counts.made_from, scene.hashes, path, scene.place);
+  const evaluation::SceneTruth* truth = scene.truth ? &*scene.truth : nullptr;
   if (counts.scene != key.scene)
     throw_io_error("{}: /scene: \"{}\" is not valid; valid: \"{}\", the folder's scene", path, counts.scene, key.scene);
   key.set = counts.set;
@@ -65,19 +86,18 @@ evaluation::RunScore read_run(const std::string& folder, evaluation::RunKey key,
 }
 
 /// A run without a result, with every tube of the scene missed.
-evaluation::RunScore failed_run(evaluation::RunKey key, const scene::SceneRecord* scene,
-                                const evaluation::SceneTruth* truth) {
+evaluation::RunScore failed_run(evaluation::RunKey key, const CurrentScene& scene) {
   evaluation::Contingency contingency;
-  if (scene != nullptr) {
-    for (std::size_t k = 0; k < scene->tube_pixels.size(); ++k) {
+  if (scene.record) {
+    for (std::size_t k = 0; k < scene.record->tube_pixels.size(); ++k) {
       contingency.truth_ids.push_back(static_cast<evaluation::SegmentId>(k + 1));
-      contingency.unlabeled.push_back(static_cast<std::int64_t>(scene->tube_pixels[k]));
+      contingency.unlabeled.push_back(static_cast<std::int64_t>(scene.record->tube_pixels[k]));
     }
-    key.tubes = static_cast<int>(scene->scene.tubes.size());
+    key.tubes = static_cast<int>(scene.record->scene.tubes.size());
   }
   contingency.counts.resize(static_cast<Eigen::Index>(contingency.truth_ids.size()), 0);
-  evaluation::RunScore run =
-      evaluation::score_run(key, contingency, evaluation::match_segments(contingency), truth, {});
+  evaluation::RunScore run = evaluation::score_run(key, contingency, evaluation::match_segments(contingency),
+                                                   scene.truth ? &*scene.truth : nullptr, {});
   run.failed = true;
   return run;
 }
@@ -90,18 +110,10 @@ struct SceneRuns {
   bool has_truth = false;
 };
 
-SceneRuns read_scene_runs(const std::string& folder, const ResultsIndex& index, const scene::DatasetFiles& dataset,
+SceneRuns read_scene_runs(const std::string& folder, const ResultsIndex& index, const CurrentScene& current,
                           const std::string& scene, const std::map<std::string, std::string>& failures) {
-  std::optional<scene::SceneRecord> record;
-  std::optional<evaluation::SceneTruth> truth;
-  if (dataset.has(scene, "scene.json")) {
-    record = scene::parse_scene_json(dataset.read(scene, "scene.json"), dataset.place(scene, "scene.json"));
-    truth.emplace(record->scene);
-  }
-  const evaluation::SceneTruth* known_truth = truth ? &*truth : nullptr;
-
   SceneRuns result;
-  result.has_truth = truth.has_value();
+  result.has_truth = current.truth.has_value();
   for (const std::string& method : index.methods) {
     for (const double ratio : index.ratios) {
       evaluation::RunKey key = evaluation::parse_scene_name(scene);
@@ -109,10 +121,10 @@ SceneRuns read_scene_runs(const std::string& folder, const ResultsIndex& index, 
       key.ratio = ratio;
       const std::string run = run_folder(scene, method, ratio);
       if (fs::exists(folder + "/" + run)) {
-        result.runs.push_back(read_run(folder + "/" + run, key, known_truth));
-        if (truth) result.runs.back().dataset = index.dataset;
+        result.runs.push_back(read_run(folder + "/" + run, key, current));
+        if (current.truth) result.runs.back().dataset = index.dataset;
       } else if (const auto failure = failures.find(run); failure != failures.end()) {
-        result.runs.push_back(failed_run(key, record ? &*record : nullptr, known_truth));
+        result.runs.push_back(failed_run(key, current));
         result.failed.push_back(fmt::format("{}: {}", key.name(), failure->second));
       } else {
         result.missing.push_back(key.name());
@@ -145,10 +157,14 @@ FolderRuns read_folder(const std::string& folder, const ResultsOptions& options,
       options.dataset.empty() ? (fs::path(folder) / index.dataset).lexically_normal().string() : options.dataset;
   const std::map<std::string, std::string> failures = read_failures(folder);
   const scene::DatasetFiles dataset(index.dataset);
+  const scene::DatasetHashes hashes(dataset);
   std::vector<SceneRuns> scenes(index.scenes.size());
   evaluation::parallel_for(
       scenes.size(), options.jobs,
-      [&](std::size_t i) { scenes[i] = read_scene_runs(folder, index, dataset, index.scenes[i], failures); },
+      [&](std::size_t i) {
+        const std::string& scene = index.scenes[i];
+        scenes[i] = read_scene_runs(folder, index, read_scene(dataset, hashes, scene), scene, failures);
+      },
       options.on_progress);
 
   FolderRuns read{.folder = folder, .conditions = index.conditions, .names = {}};

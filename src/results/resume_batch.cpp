@@ -36,7 +36,8 @@ ResumedBatch resume_batch(const std::vector<std::string>& results) {
   options.ratios.clear();
   for (const JsonPlace& method : root.at("methods").elements()) options.methods.push_back(parse_method(method));
   for (const JsonPlace& ratio : root.at("ratios").elements()) options.ratios.push_back(ratio.number());
-  for (const JsonPlace& scene : root.at("scenes").elements()) options.scenes.push_back(scene.text());
+  for (const JsonPlace& scene : root.at("scenes").elements())
+    options.scenes.push_back(ConfinedPath::parse(scene.text(), path + ": /scenes"));
   root.at("options").fields([&](Fields& fields) { describe(fields, batch.config); });
   return batch;
 }

@@ -17,7 +17,7 @@ constexpr std::array<const char*, 2> kClouds = {"cloud.pcd", "cloud.ply"};
 
 }  // namespace
 
-std::string packed_name(const std::string& scene, const std::string& file) { return scene + "." + file; }
+std::string packed_name(const ConfinedPath& scene, const ConfinedPath& file) { return scene.str() + "." + file.str(); }
 
 std::string packs_folder(const std::string& dataset) { return dataset + "/packs"; }
 
@@ -39,7 +39,11 @@ void DatasetFiles::add_pack(const std::string& path) {
   packs_.push_back(path);
   for (TarMember& member : list_tar(path)) {
     if (member.name.starts_with("./")) member.name.erase(0, 2);
-    const std::size_t dot = member.name.find('.', member.name.rfind('/') + 1);  // npos + 1 is 0
+    const std::size_t slash = member.name.rfind('/') + 1;  // npos + 1 is 0
+    // As programs of macOS add; and what is hidden is no scene's.
+    if (member.name[slash] == '.' && member.name.substr(slash) != "..") continue;
+    ConfinedPath::parse(member.name, path);
+    const std::size_t dot = member.name.find('.', slash);
     if (dot == std::string::npos) continue;
     const std::string scene = member.name.substr(0, dot);
     member.name.erase(0, dot + 1);
@@ -48,39 +52,45 @@ void DatasetFiles::add_pack(const std::string& path) {
 }
 
 /// The last one of that name, as tar programs take it.
-const DatasetFiles::Packed* DatasetFiles::find_packed(const std::string& scene, const std::string& file) const {
+const DatasetFiles::Packed* DatasetFiles::find_packed(const ConfinedPath& scene, const ConfinedPath& file) const {
   const auto found = packed_.find(scene);
   if (found == packed_.end()) return nullptr;
   const auto match = std::find_if(found->second.rbegin(), found->second.rend(),
-                                  [&](const Packed& packed) { return packed.member.name == file; });
+                                  [&](const Packed& packed) { return packed.member.name == file.str(); });
   return match == found->second.rend() ? nullptr : &*match;
 }
 
-std::string DatasetFiles::loose_path(const std::string& scene, const std::string& file) const {
-  return dataset_ + "/" + scene + "/" + file;
+std::string DatasetFiles::loose_path(const ConfinedPath& scene, const ConfinedPath& file) const {
+  return fmt::format("{}/{}", dataset_, scene / file);
 }
 
-bool DatasetFiles::is_loose(const std::string& scene, const std::string& file) const {
-  return is_folder_ && fs::exists(loose_path(scene, file));
+bool DatasetFiles::is_loose(const ConfinedPath& scene, const ConfinedPath& file) const {
+  // A file that can't be looked at counts as there: who reads it is told why not.
+  std::error_code error;
+  return is_folder_ && fs::status(loose_path(scene, file), error).type() != fs::file_type::not_found;
 }
 
-bool DatasetFiles::has(const std::string& scene, const std::string& file) const {
+bool DatasetFiles::has(const ConfinedPath& scene, const ConfinedPath& file) const {
   return is_loose(scene, file) || find_packed(scene, file) != nullptr;
 }
 
-std::string DatasetFiles::read(const std::string& scene, const std::string& file) const {
+std::string DatasetFiles::read(const ConfinedPath& scene, const ConfinedPath& file) const {
   const Packed* packed = find_packed(scene, file);
   if (packed == nullptr || is_loose(scene, file)) return read_file(loose_path(scene, file));
   return read_tar_member(packs_[packed->pack], packed->member);
 }
 
-std::string DatasetFiles::place(const std::string& scene, const std::string& file) const {
-  const Packed* packed = find_packed(scene, file);
-  if (packed == nullptr || is_loose(scene, file)) return loose_path(scene, file);
-  return packs_[packed->pack] + ":" + packed_name(scene, file);
+std::string DatasetFiles::place(const ConfinedPath& scene, const ConfinedPath& file) const {
+  const std::string holding = holding_file(scene, file);
+  return holding == loose_path(scene, file) ? holding : holding + ":" + packed_name(scene, file);
 }
 
-std::string DatasetFiles::cloud_of(const std::string& scene) const {
+std::string DatasetFiles::holding_file(const ConfinedPath& scene, const ConfinedPath& file) const {
+  const Packed* packed = find_packed(scene, file);
+  return packed == nullptr || is_loose(scene, file) ? loose_path(scene, file) : packs_[packed->pack];
+}
+
+std::string DatasetFiles::cloud_of(const ConfinedPath& scene) const {
   const auto found = std::ranges::find_if(kClouds, [&](const char* file) { return has(scene, file); });
   return found == kClouds.end() ? "" : *found;
 }
@@ -91,11 +101,11 @@ std::vector<std::string> DatasetFiles::scenes() const try {
     if (std::ranges::any_of(kClouds, [&](const char* file) { return find_packed(packed.first, file) != nullptr; }))
       scenes.insert(packed.first);
   if (!is_folder_) return {scenes.begin(), scenes.end()};
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dataset_)) {
-    const fs::path& path = entry.path();
+  for (auto entry = fs::recursive_directory_iterator(dataset_); entry != fs::recursive_directory_iterator(); ++entry) {
+    const fs::path& path = entry->path();
+    if (path.filename().string().starts_with('.')) entry.disable_recursion_pending();
     if (path.filename() != kClouds[0] && path.filename() != kClouds[1]) continue;
-    const fs::path scene = path.parent_path().lexically_relative(dataset_);
-    if (!scene.filename().string().starts_with('.') || scene == ".") scenes.insert(scene.generic_string());
+    scenes.insert(ConfinedPath::parse(path.parent_path().lexically_relative(dataset_).generic_string(), dataset_));
   }
   return {scenes.begin(), scenes.end()};
 } catch (const fs::filesystem_error& error) {

@@ -1,5 +1,7 @@
 #include "tubebin/scene/scene.hpp"
 
+#include "scene/pixel_limit.hpp"
+
 namespace tubebin::scene {
 
 std::vector<Box> bin_boxes(const Bin& bin) {
@@ -55,6 +57,9 @@ void describe(Fields& fields, Scanner& scanner) {
 }
 
 void check(const Scanner& scanner, const KeyPlaces& places, const std::string& prefix) {
+  if (has_too_many_pixels(scanner))
+    places.fail(prefix + ".width", fmt::format("{} x {} pixels are not valid; valid: up to {} pixels", scanner.width,
+                                               scanner.height, kPixelsMax));
   if (scanner.range_max <= scanner.range_min)
     places.fail(prefix + ".range_max",
                 fmt::format("{} m is not beyond range_min = {} m", scanner.range_max, scanner.range_min));

@@ -5,6 +5,7 @@
 
 #include "core/json_reader.hpp"
 #include "core/json_writer.hpp"
+#include "scene/pixel_limit.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/version.hpp"
 #include "tubebin/scene/camera.hpp"
@@ -138,6 +139,8 @@ void read_header(const JsonPlace& root) {
 Scanner read_scanner(const JsonPlace& place) {
   Scanner scanner;
   place.fields([&](Fields& fields) { describe(fields, scanner); });
+  if (has_too_many_pixels(scanner))
+    place.at("width").fail(fmt::format("up to {} pixels of width x height", kPixelsMax));
   if (scanner.range_max <= scanner.range_min) place.at("range_max").fail("beyond range_min");
   if (place.has("effects")) place.at("effects").fields([&](Fields& fields) { describe(fields, scanner.effects); });
   const Camera camera(scanner);
@@ -349,5 +352,11 @@ SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
 }
 
 SceneRecord read_scene_json(const std::string& path) { return parse_scene_json(read_file(path), path); }
+
+void require_id(const SceneRecord& record, const std::string& name, const std::string& place) {
+  if (name == "." || name == record.id || name.ends_with("/" + record.id)) return;
+  throw_io_error("{}: /id: \"{}\" is not valid; valid: \"{}\", the scene that the file stands in", place, record.id,
+                 name);
+}
 
 }  // namespace tubebin::scene

@@ -5,7 +5,7 @@
 
 namespace tubebin {
 
-/// The text as one word of a POSIX shell: quoted where it must be.
-std::string shell_word(const std::string& text);
+/// The path as one word of a POSIX shell that no program takes for an option: quoted and begun with ./ where it must be.
+std::string shell_path(const std::string& path);
 
 }  // namespace tubebin

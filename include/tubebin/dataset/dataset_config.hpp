@@ -47,6 +47,8 @@ std::function<void(Fields&)> fields_of(DatasetConfig& config);
 DatasetConfig load_config(const std::string& path);
 /// Throws ConfigError where values contradict each other; `places` says where each was set.
 void check(const DatasetConfig& config, const KeyPlaces& places);
+/// The same but for what only the version that runs, and this machine, must fit: of a data set that is there already.
+void check_of_any_version(const DatasetConfig& config, const KeyPlaces& places);
 
 /// The configuration as a file that load_config reads back to the same values.
 std::string format_config(const DatasetConfig& config);

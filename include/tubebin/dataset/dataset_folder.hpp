@@ -15,8 +15,11 @@
 namespace tubebin::dataset {
 
 /// The configuration of an existing data set, of whatever version. Throws IoError where the folder has none,
-/// ConfigError where it can't be read.
+/// ConfigError where it can't be read or its values can't be meant.
 DatasetConfig read_dataset_config(const std::string& folder);
+
+/// Throws ConfigError where another version made it: what this one checks or adds would not be the same.
+void require_own_version(const DatasetConfig& config, const std::string& folder);
 
 /// A data set open for generation. Whatever a killed run left unfinished is gone.
 class DatasetFolder {
@@ -44,13 +47,16 @@ class DatasetFolder {
   const Manifest& manifest() const { return manifest_; }
   const SceneStore& store() const { return store_; }
 
+  /// Makes config.yaml again where somebody removed it meanwhile. Throws IoError where the folder is gone.
+  void restore_config();
+
   /// True where the scene is recorded and its files are there.
   bool is_complete(const std::string& scene_name) const;
 
  private:
   void remove_unfinished() const;
 
-  std::string folder_;
+  OutputFolder folder_;
   std::optional<std::vector<SceneId>> part_;  // of whoever makes a part alone
   jobs::FolderLock lock_;
   DatasetConfig config_;

@@ -9,12 +9,15 @@
 namespace tubebin::dataset {
 
 struct MergeReport {
-  int signal = 0;                     ///< that ended it early; 0: none
-  std::size_t scenes = 0;             ///< that the configuration asks for
-  std::size_t complete = 0;           ///< sound ones, in `output` and its manifest now
-  std::vector<std::string> missing;   ///< "A10/007": scenes that no folder has
-  std::vector<std::string> problems;  ///< "DIR/A10/007: cloud.pcd is missing"
-  std::vector<std::string> commands;  ///< of the shell, that make exactly what is missing or damaged
+  int signal = 0;                      ///< that ended it early; 0: none
+  std::size_t scenes = 0;              ///< that the configuration asks for
+  std::size_t complete = 0;            ///< sound ones, in `output` and its manifest now
+  std::vector<std::string> missing;    ///< "A10/007": scenes that no folder has
+  std::vector<std::string> unchecked;  ///< "A10/007": scenes of which nobody can tell, each with its problem
+  std::vector<std::string> problems;   ///< "DIR/A10/007: cloud.pcd is missing"
+  std::vector<std::string> commands;   ///< of the shell, that make exactly what is missing or damaged
+
+  bool is_whole() const { return complete == scenes; }
 };
 
 /// Makes `output` the data set that one machine would have made: checks that all folders are of one configuration,

@@ -25,12 +25,12 @@ struct SceneContent {
 
 class SceneStore {
  public:
-  SceneStore(std::string folder, OutputOptions options) : folder_(std::move(folder)), options_(options) {}
+  SceneStore(OutputFolder folder, OutputOptions options) : folder_(std::move(folder)), options_(options) {}
 
   /// "DIR"
-  const std::string& folder() const { return folder_; }
+  const OutputFolder& folder() const { return folder_; }
   /// "DIR/A10/007"
-  std::string path(const std::string& scene_name) const { return folder_ + "/" + scene_name; }
+  std::string path(const ConfinedPath& scene_name) const { return folder_.place(scene_name); }
   /// "cloud.pcd" or "cloud.ply"
   std::string cloud_name() const;
   /// "cloud_clean.pcd" or "cloud_clean.ply"
@@ -39,19 +39,23 @@ class SceneStore {
   /// Begins to write the scene, in the place of any that is there. It is complete when the returned function has
   /// returned its files, after waiting for the disk. Both throw IoError; nothing unfinished is ever under the scene's
   /// name.
-  std::function<std::map<std::string, FileRecord>()> begin_write(const std::string& scene_name,
-                                                                 const SceneContent& content) const;
+  std::function<std::map<ConfinedPath, FileRecord>()> begin_write(const ConfinedPath& scene_name,
+                                                                  const SceneContent& content) const;
 
   /// True where the scene's folder has the files of the record, each with its size (hashes are for verify), or its pack
   /// is long enough to.
   bool has(const ManifestRecord& record) const;
 
-  /// Removes what killed runs left unfinished: of anything in these scenes' folders, or `only` of these scenes.
+  /// Removes the scene's folder, if it is there. Throws IoError.
+  void remove(const ConfinedPath& scene_name) const;
+
+  /// Removes what killed runs left unfinished: of anything in these scenes' folders and of what stands beside them, or
+  /// `only` of these scenes.
   enum class Unfinished { all, only };
   void remove_unfinished(const std::vector<SceneId>& scenes, Unfinished which) const;
 
  private:
-  std::string folder_;
+  OutputFolder folder_;
   OutputOptions options_;
 };
 

@@ -46,6 +46,7 @@ struct RunScore {
   double micro_recall = 0.0;  ///< Equation 1
   SegmentationScores scores;
   std::vector<SegmentationScores> by_visibility;  ///< kVisibilityClasses of them; empty where the scene is not known
+  std::optional<double> coverage;                 ///< share of the scene's tube points that were scored; nothing: all
   std::optional<double> seconds;                  ///< modelling time
   std::string dataset;                            ///< the data set's folder; empty where the scene is not known
   std::string folder;                             ///< of a run of model_tubes

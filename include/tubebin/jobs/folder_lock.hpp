@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "tubebin/core/folder_entry.hpp"
 #include "tubebin/jobs/shard.hpp"
 
 namespace tubebin::jobs {
@@ -20,19 +21,23 @@ class FolderLock {
 
   /// Throws ConfigError where another run holds the folder (naming its process) and IoError where the lock file
   /// can't be made.
-  explicit FolderLock(const std::string& folder, Kind kind = Kind::exclusive);
+  explicit FolderLock(const OutputFolder& folder, Kind kind = Kind::exclusive);
+
+  /// Of who only reads: makes no file. Throws as above.
+  explicit FolderLock(const std::string& folder);
 
   /// Of one part, which two runs can't pack into one tar at once, by a file of its own in `folder`. Throws IoError
   /// where another run holds it (as where a scheduler has lost sight of that run's host: starting again is right) and
   /// where the lock file can't be made.
-  FolderLock(const std::string& folder, const Shard& packed_part);
+  FolderLock(const OutputFolder& folder, const Shard& packed_part);
 
-  ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
  private:
-  int descriptor_ = -1;
+  void require_free(const std::string& folder, Kind kind) const;
+
+  FileDescriptor file_;
 };
 
 }  // namespace tubebin::jobs

@@ -4,14 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "tubebin/core/folder_entry.hpp"
+
 namespace tubebin::jobs {
 
 class LineJournal {
  public:
   /// A file that is not there has no lines. Throws IoError.
-  explicit LineJournal(std::string path);
+  LineJournal(OutputFolder folder, ConfinedPath name);
 
-  const std::string& path() const { return path_; }
+  std::string path() const { return folder_.place(name_); }
   /// The complete lines, without their ends, as they were at the start; the last one may have been cut short by a kill,
   /// and is not among them.
   const std::vector<std::string>& lines() const { return lines_; }
@@ -20,7 +22,8 @@ class LineJournal {
   void append(const std::string& line);
 
  private:
-  std::string path_;
+  OutputFolder folder_;
+  ConfinedPath name_;
   std::size_t complete_bytes_ = 0;  // up to the end of the last complete line
   std::vector<std::string> lines_;
 };

@@ -6,6 +6,7 @@
 
 #include "tubebin/modeling/pipeline.hpp"
 #include "tubebin/results/cloud_files.hpp"
+#include "tubebin/scene/input_hashes.hpp"
 #include "tubebin/scene/scene_json.hpp"
 
 namespace tubebin::results {
@@ -34,13 +35,14 @@ struct CloudToModel {
   std::string path;
   cloud::Cloud cloud;
   std::optional<scene::SceneRecord> scene;
+  scene::InputHashes hashes;
   double read_seconds = 0.0;
 };
 
 /// Reads the cloud, its coordinates times `scale`, and scene.json in its folder if there is one. Throws IoError.
 CloudToModel read_cloud_to_model(const std::string& path, double scale = 1.0);
 
-/// The same of a scene of a data set.
+/// The same of a scene of a data set. Throws IoError, too, where scene.json says that it is of another scene.
 CloudToModel read_cloud_to_model(const scene::DatasetFiles& files, const CloudFile& cloud);
 
 /// Models the cloud: its positions, its viewpoint and the scene's bin, nothing else of what is there. Throws IoError.

@@ -17,7 +17,7 @@ struct ModelingRun {
   double ratio = 1.0;
 
   /// Beneath the results: "A10/007/centerline_0.3".
-  std::string folder() const { return fmt::format("{}/{}_{}", scene, name_of(method), ratio); }
+  ConfinedPath folder() const { return ConfinedPath(scene) / fmt::format("{}_{}", name_of(method), ratio); }
 };
 
 /// The configuration with the run's method, ratio and seed. Both methods get the same seed, and so the same points.

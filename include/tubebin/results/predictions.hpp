@@ -18,7 +18,8 @@ struct PredictionOptions {
 /// The prediction of scene A10/007 is `folder`/A10/007.pcd or `folder`/A10/007/labeled.pcd (or .ply): points
 /// of the scene's cloud in any order, each with a label or a colour a tube; label 0 or black is no tube.
 /// Micro-recall is over the points of tubes, or over `folder`/A10/007/filtered.pcd where the program gives
-/// the points that it worked on. A scene without a prediction counts as zero and is named.
+/// the points that it worked on: points of the scene's cloud, whose ground truth is the data set's, and at least
+/// kCoverageMin of them. A scene without a prediction counts as zero and is named.
 ///
 /// Throws IoError naming the file where the data set has no labelled clouds, no scene has a prediction, or a
 /// prediction does not belong to its scene.

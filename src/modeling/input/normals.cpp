@@ -91,12 +91,18 @@ class Neighborhoods {
     return std::sqrt(squared);
   }
 
+  /// Beyond the widest grid there are no cells; and a ratio that is not finite reaches all of them.
+  static int reach_of(float cells) {
+    constexpr float kReachMax = 1 << 24;
+    return cells < kReachMax ? static_cast<int>(std::ceil(cells)) : static_cast<int>(kReachMax);
+  }
+
   void look_at(std::size_t i) {
     const ViewProjection::Image image = grid_.image(i);
     // A radian is 1 + (u^2 + v^2) / 4 units of the stereographic plane.
     const float units =
         radius_ / std::max(image.range, radius_) * (1.0f + 0.25f * (image.u * image.u + image.v * image.v));
-    const Window window{grid_.row(i), grid_.column(i), static_cast<int>(std::ceil(units / cell_))};
+    const Window window{grid_.row(i), grid_.column(i), reach_of(units / cell_)};
     if (window == window_) return;
     window_ = window;
     const auto [middle_row, column, reach] = window;

@@ -13,6 +13,8 @@ namespace {
 
 /// No grid takes more memory than this many cells need, however far apart its points lie.
 constexpr double kMostCells = 1 << 24;
+/// The same for points on a line, whose area is 0.
+constexpr double kMostCellsInARow = 1 << 20;
 
 struct Extent {
   float u_min = std::numeric_limits<float>::infinity(), v_min = u_min;
@@ -23,6 +25,12 @@ struct Extent {
     for (const float v : images.v) v_min = std::min(v_min, v), v_max = std::max(v_max, v);
   }
   double area() const { return double(u_max - u_min) * double(v_max - v_min); }
+
+  /// The smallest cell that keeps a grid over it within its memory.
+  double smallest_cell() const {
+    const double longer_side = std::max(double(u_max - u_min), double(v_max - v_min));
+    return std::max(std::sqrt(area() / kMostCells), longer_side / kMostCellsInARow);
+  }
 };
 
 /// How many cells of this size hold a point.
@@ -49,7 +57,7 @@ ViewGrid::ViewGrid(ViewProjection::Images images, std::span<const cloud::Point> 
     return;
   }
   const Extent extent(images_);
-  cell = std::max(cell, static_cast<float>(std::sqrt(extent.area() / kMostCells)));
+  cell = std::max(cell, static_cast<float>(extent.smallest_cell()));
   columns_ = static_cast<std::uint32_t>((extent.u_max - extent.u_min) / cell) + 1;
   rows_ = static_cast<std::uint32_t>((extent.v_max - extent.v_min) / cell) + 1;
 
@@ -98,7 +106,7 @@ double estimate_spacing(const ViewProjection::Images& images) {
   double cell = std::sqrt(std::max(extent.area(), 1e-12) * kPointsPerCell / count);
   double area = extent.area();
   for (int round = 0; round < 3; ++round) {
-    cell = std::max(cell, std::sqrt(extent.area() / kMostCells));
+    cell = std::max(cell, extent.smallest_cell());
     area = static_cast<double>(count_occupied(images, extent, static_cast<float>(cell))) * cell * cell;
     cell = std::sqrt(area * kPointsPerCell / count);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <utility>
@@ -17,6 +18,8 @@ class FileDescriptor {
   }
   ~FileDescriptor() { close(); }
   int get() const { return descriptor_; }
+  /// Another one of the same file, which its owner may close.
+  FileDescriptor duplicate() const { return FileDescriptor(::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0)); }
   /// What close() of the system returns; some file systems tell only then that a write failed.
   int close() {
     const int descriptor = std::exchange(descriptor_, -1);
