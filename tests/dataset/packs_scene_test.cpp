@@ -64,7 +64,7 @@ TEST_F(Packs, ArePackedByOneRunAtATime) {
   const std::vector<std::string> part = {"--shard", "1/2", "--pack"};
   ASSERT_EQ(generate(data_, {"--shard", "2/2", "--pack"}).exit_code, 0);
   {
-    const jobs::FolderLock other(parts_folder(data_), jobs::Shard{.index = 1, .count = 2});
+    const jobs::FolderLock other(OutputFolder(data_).make_inner(kPartsFolder), jobs::Shard{.index = 1, .count = 2});
     const ProgramResult refused = generate(data_, part);
     EXPECT_EQ(refused.exit_code, 1);  // a scheduler may start it again
     EXPECT_THAT(refused.error, HasSubstr(fmt::format("process {} is packing part 00001-of-00002", getpid())));

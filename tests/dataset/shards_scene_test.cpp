@@ -118,7 +118,7 @@ TEST_F(Shards, RunTwiceAtOnceDoNoHarm) {
 }
 
 TEST_F(Shards, KeepOutWhoWantsTheFolderForHimself) {
-  const jobs::FolderLock part((fs::create_directories(data_), data_), jobs::FolderLock::Kind::part);
+  const jobs::FolderLock part(OutputFolder(data_), jobs::FolderLock::Kind::part);
   EXPECT_EQ(generate(data_, {"--shard", "1/2"}).exit_code, 0);
   EXPECT_EQ(generate(data_).exit_code, 2);
   EXPECT_EQ(run_generate_dataset({"--merge", data_}).exit_code, 2);

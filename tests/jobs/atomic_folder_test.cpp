@@ -20,6 +20,7 @@ TEST(WholeFolder, IsWholeOrNotThereWhileAnotherClears) {
   const TemporaryFolder folder;
   const std::string data = folder / "Q1", scene = data + "/001";
   fs::create_directory(data);
+  const OutputFolder output(folder / "");
   std::map<std::string, std::string> files;
   for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h"}) files[name] = "bytes";
 
@@ -27,7 +28,7 @@ TEST(WholeFolder, IsWholeOrNotThereWhileAnotherClears) {
   std::atomic<int> failed_clearings = 0;
   std::thread clearer([&] {
     while (!done) try {
-        remove_unfinished_folders(data);
+        remove_unfinished(output, "Q1");
       } catch (const IoError&) {
         ++failed_clearings;
       }
@@ -35,7 +36,7 @@ TEST(WholeFolder, IsWholeOrNotThereWhileAnotherClears) {
   int written = 0;
   for (int round = 0; round < 500; ++round) {
     try {
-      begin_whole_folder(scene, files)();
+      begin_whole_folder(output, "Q1/001", files)();
     } catch (const IoError&) {
       continue;
     }
@@ -45,7 +46,7 @@ TEST(WholeFolder, IsWholeOrNotThereWhileAnotherClears) {
   done = true;
   clearer.join();
   EXPECT_EQ(failed_clearings, 0);
-  remove_unfinished_folders(data);
+  remove_unfinished(output, "Q1");
   EXPECT_EQ(std::distance(fs::directory_iterator(data), fs::directory_iterator()), written > 0 ? 1 : 0);
 }
 

@@ -240,6 +240,38 @@ TEST(WorkerPool, ACrashCostsTheJobThatIsBeingFinishedNothing) {
   EXPECT_EQ(r.outcomes.at(1).failed.size(), 1u);
 }
 
+/// Nothing that was computed is lost, and nobody waits for ever, where a process stands still while it finishes its last job.
+TEST(WorkerPool, MakesAnAttemptAgainWhoseProcessStandsStillWhileItFinishes) {
+  const testing::TemporaryFolder folder;
+  const PoolRun r =
+      run(3, {.workers = 2, .attempts_max = 1, .attempt_time_limit = 0.3}, [&](std::size_t job, int attempt) {
+        return successful_attempt([&folder, job, attempt]() -> std::string {
+          const std::string mark = folder / std::to_string(job);
+          if (!testing::fs::exists(mark)) {
+            testing::write_text(mark, "");
+            raise(SIGSTOP);
+          }
+          return std::to_string(attempt);
+        });
+      });
+  EXPECT_EQ(r.report.succeeded, 3u);
+  for (const auto& [job, outcome] : r.outcomes)
+    EXPECT_EQ(outcome.text, "0") << "the same attempt, and so the same bytes";
+  expect_no_children();
+}
+
+TEST(WorkerPool, GivesUpAJobThatNeverFinishes) {
+  const PoolRun r = run(1, {.workers = 1, .attempts_max = 1, .attempt_time_limit = 0.1}, [](std::size_t, int) {
+    return successful_attempt([]() -> std::string {
+      raise(SIGSTOP);
+      return "never";
+    });
+  });
+  EXPECT_EQ(r.report.failed, 1u);
+  EXPECT_EQ(r.outcomes.at(0).failed.back().reason, "killed");
+  expect_no_children();
+}
+
 TEST(WorkerPool, EndsTheRunWhenFinishingFails) {
   const auto work = [](std::size_t, int) {
     return successful_attempt([]() -> std::string { throw IoError("disk full"); });

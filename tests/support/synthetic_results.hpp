@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/file_record.hpp"
 #include "tubebin/evaluation/run_score.hpp"
 #include "tubebin/scene/scene_json.hpp"
 
@@ -125,13 +126,16 @@ inline void write_synthetic_sweep(const fs::path& folder, const SyntheticSweep& 
         const std::string name = scene_name(set, tubes, number);
         scenes.push_back(name);
         const scene::SceneRecord scene = synthetic_scene(name, tubes, sweep.cylinders);
-        write_text(folder / "dataset" / name / "scene.json", scene::format_scene_json(scene));
+        const std::string scene_text = scene::format_scene_json(scene);
+        write_text(folder / "dataset" / name / "scene.json", scene_text);
         const std::string model = model_json(scene).dump();
         for (const std::string& method : sweep.methods)
           for (const double ratio : sweep.ratios) {
             const evaluation::RunKey key{name, set, tubes, number, method, ratio};
             const fs::path run = folder / "results" / run_folder(key);
-            write_text(run / "result.json", result_json(key).dump(1));
+            nlohmann::json result = result_json(key);
+            result["scene_json_xxh128"] = record_bytes(scene_text).xxh128;
+            write_text(run / "result.json", result.dump(1));
             write_text(run / "model.json", model);
             write_text(run / "times.json", nlohmann::json{{"read", 0.001}, {"total", modelling_seconds(key)}}.dump());
           }
