@@ -9,6 +9,8 @@
 
 #include "standard_streams.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/core/text_scan.hpp"
+#include "tubebin/core/utf8.hpp"
 
 namespace tubebin {
 
@@ -27,6 +29,13 @@ inline void read_integers_as_decimal(CLI::App& app) {
       option->transform(strip_zeros);
 }
 
+/// Paths go into JSON files and reports, which are UTF-8. Throws ConfigError.
+inline void require_utf8(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (!is_utf8(argv[i]))
+      throw_config_error("argument {}: '{}' is no UTF-8 text; rename the path", i, excerpt(argv[i]));
+}
+
 /// `run` returns the exit code of a command line that was understood.
 template <typename Run>
 int run_program(const char* name, CLI::App& app, int argc, char** argv, const Run& run) {
@@ -37,6 +46,7 @@ int run_program(const char* name, CLI::App& app, int argc, char** argv, const Ru
   open_standard_streams();
   int code = 0;
   try {
+    require_utf8(argc, argv);
     read_integers_as_decimal(app);
     app.parse(argc, argv);
     code = run();

@@ -1,6 +1,7 @@
 #include "tubebin/cloud/cloud_io.hpp"
 
 #include <cmath>
+#include <new>
 #include <stdexcept>
 
 #include "cloud/cloud_formats.hpp"
@@ -36,8 +37,12 @@ Cloud parse_cloud(std::string_view bytes, const std::string& name, double scale)
   if (!std::isfinite(scale) || scale <= 0.0)
     throw_config_error("{}: the scale {} is not valid; valid: a number above 0", name, scale);
   if (bytes.empty()) throw_io_error("{}: the file is empty; expected a PCD or PLY cloud", name);
-  if (looks_like_ply(bytes)) return parse_ply(bytes, name, scale);
-  if (looks_like_pcd(bytes)) return parse_pcd(bytes, name, scale);
+  try {
+    if (looks_like_ply(bytes)) return parse_ply(bytes, name, scale);
+    if (looks_like_pcd(bytes)) return parse_pcd(bytes, name, scale);
+  } catch (const std::bad_alloc&) {
+    throw_io_error("{}: its points take more memory than there is", name);
+  }
   throw_io_error("{}: neither a PCD nor a PLY file: it starts with '{}'", name, excerpt(bytes));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <new>
 #include <numeric>
 
 #include "tubebin/cloud/cloud_io.hpp"
@@ -33,6 +34,19 @@ std::vector<std::size_t> input_order(const modeling::ModelingResult& result) {
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return result.source[a] < result.source[b]; });
   return order;
+}
+
+/// Beyond it, neighbours of a float differ by more than a tube's wall, and squares and grids overflow.
+constexpr float kFarthest = 1e5F;  // metres
+
+void require_near(const CloudToModel& input) {
+  const auto is_far = [](const cloud::Point& p) { return cloud::is_finite(p) && p.cwiseAbs().maxCoeff() > kFarthest; };
+  const auto far = std::find_if(input.cloud.points.begin(), input.cloud.points.end(), is_far);
+  if (far == input.cloud.points.end()) return;
+  throw_io_error(
+      "{}: point {} is at {} {} {} m; valid: up to {} m from the origin. Is the unit right (--scale)? A point that "
+      "was not measured is NaN",
+      input.path, far - input.cloud.points.begin(), far->x(), far->y(), far->z(), kFarthest);
 }
 
 cloud::Cloud unorganized(const cloud::Cloud& input, std::size_t size) {
@@ -91,6 +105,7 @@ CloudToModel read_cloud_to_model(const scene::DatasetFiles& files, const CloudFi
 modeling::ModelingResult model_cloud(const CloudToModel& input, const ModelConfig& config) {
   if (std::none_of(input.cloud.points.begin(), input.cloud.points.end(), cloud::is_finite))
     throw_io_error("{}: has no finite point", input.path);
+  require_near(input);
   const modeling::ModelingInput positions{.points = input.cloud.points,
                                           .world_from_sensor = choose_sensor(input, config),
                                           .bin = choose_bin(input, config)};
@@ -98,6 +113,8 @@ modeling::ModelingResult model_cloud(const CloudToModel& input, const ModelConfi
     return modeling::model_tubes(positions, config.modeling);
   } catch (const IoError& error) {
     throw IoError(input.path + ": " + error.what());
+  } catch (const std::bad_alloc&) {
+    throw_io_error("{}: modelling its {} points takes more memory than there is", input.path, input.cloud.size());
   }
 }
 

@@ -19,6 +19,7 @@ constexpr std::uint64_t kMaxLabel = std::numeric_limits<std::uint32_t>::max();
 // Tubes are compared at samples 5 mm apart, so there must be an end to their length.
 constexpr Limits kCoordinate = {-1000.0, 1000.0};
 constexpr double kMaxModelLength = 10'000.0;
+constexpr double kRunsMax = 20e6;
 constexpr Limits kSeconds = {0.0, 1e9};
 
 void check_format(const JsonPlace& root, const char* expected) {
@@ -73,6 +74,12 @@ ResultsIndex parse_results_index(std::string_view text, const std::string& name)
   for (const JsonPlace& ratio : root.at("ratios").elements()) index.ratios.push_back(ratio.number());
   for (const JsonPlace& scene : root.at("scenes").elements())
     index.scenes.push_back(ConfinedPath::parse(scene.text(), name + ": /scenes"));
+  // Three short lists may ask for many runs.
+  if (static_cast<double>(index.methods.size()) * static_cast<double>(index.ratios.size()) *
+          static_cast<double>(index.scenes.size()) >
+      kRunsMax)
+    throw_io_error("{}: {} methods at {} ratios of {} scenes are too many runs; valid: up to {}", name,
+                   index.methods.size(), index.ratios.size(), index.scenes.size(), kRunsMax);
   nlohmann::ordered_json configuration;
   for (const char* key : {"tool_version", "dataset", "seed", "options"}) {
     root.at(key);

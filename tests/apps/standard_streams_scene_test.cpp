@@ -95,7 +95,7 @@ TEST_F(StandardStreams, APathThatIsNoTextIsNamed) {
   ASSERT_EQ(shell(generate_ + " -q; mv data $'d\\xff'"), 0);
   const ProgramResult result = run(
       {"/bin/bash", "-c", "cd " + (folder_ / "") + "; " + program_path("model_tubes") + " $'d\\xff' --output r -q"});
-  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.error, HasSubstr("no UTF-8"));
 }
 

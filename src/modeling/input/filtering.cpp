@@ -120,8 +120,10 @@ void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double 
 }
 
 FilteredCloud thinned(const FilteredCloud& cloud, double apart, const ViewProjection& projection, double radius) {
-  const double step = apart / cloud.spacing;
-  const auto stride = static_cast<std::size_t>(std::max(std::round(step * step), 1.0));
+  const double wanted = std::round(std::pow(apart / cloud.spacing, 2));
+  // Points in one place have no spacing.
+  const double stride_max = static_cast<double>(std::max<std::size_t>(cloud.points.size(), 1));
+  const auto stride = wanted >= 1.0 ? static_cast<std::size_t>(std::min(wanted, stride_max)) : std::size_t{1};
   const auto select = [stride](const auto& all) {
     std::remove_cvref_t<decltype(all)> selected;
     for (std::size_t i = 0; i < all.size(); i += stride) selected.push_back(all[i]);
