@@ -44,7 +44,8 @@ inline std::string close_standard_output() {
   errno = 0;
   const bool failed = std::ferror(stdout) != 0 || !std::cout;
   if (std::fflush(stdout) == 0 && !failed) return "";
-  return std::string("standard output: cannot be written: ") + std::strerror(errno != 0 ? errno : EIO);
+  return std::string("standard output: cannot be written") +
+         (errno != 0 ? std::string(": ") + std::strerror(errno) : "");
 }
 
 }  // namespace tubebin

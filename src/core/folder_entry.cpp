@@ -109,8 +109,13 @@ FileDescriptor open_folder(const FolderEntry& entry, bool make) {
 void remove_entry(const FolderEntry& entry) {
   if (::unlinkat(entry.folder.get(), entry.name.c_str(), 0) == 0 || errno == ENOENT) return;
   if (errno != EISDIR && errno != EPERM) fail_at(entry, "cannot be removed", errno);
-  remove_what_is_in(entry);
-  if (::unlinkat(entry.folder.get(), entry.name.c_str(), AT_REMOVEDIR) == 0 || errno == ENOENT) return;
+  // Whoever still writes into it may make some files more before it meets an error.
+  constexpr int kTriesMax = 1000;
+  for (int i = 0; i < kTriesMax; ++i) {
+    remove_what_is_in(entry);
+    if (::unlinkat(entry.folder.get(), entry.name.c_str(), AT_REMOVEDIR) == 0 || errno == ENOENT) return;
+    if (errno != ENOTEMPTY && errno != EEXIST) break;
+  }
   fail_at(entry, "cannot be removed", errno);
 }
 

@@ -68,7 +68,8 @@ class UnfinishedFolder {
  private:
   FileDescriptor make_folder() const {
     remove_entry(unfinished_);  // of an earlier process of the same id
-    return open_folder(unfinished_, true);
+    if (::mkdirat(unfinished_.folder.get(), unfinished_.name.c_str(), 0777) != 0) fail_at(final_, kWriting, errno);
+    return open_folder(unfinished_, false);
   }
 
   /// Returns false where it is to be tried again, since the name was taken or freed meanwhile.

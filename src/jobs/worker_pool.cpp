@@ -212,11 +212,10 @@ class Pool {
 
   void enforce_time_limit(Worker& worker) {
     const double now = clock_.now();
-    if (worker.job && now - worker.attempt_start > options_.attempt_time_limit)
+    // A process that was stopped, or a disk that hangs: no attempt's fault.
+    if (worker.finishing && now - worker.finish_start > options_.attempt_time_limit) make_again_after_kill(worker);
+    else if (worker.job && now - worker.attempt_start > options_.attempt_time_limit)
       lose_process(worker, "timeout", fmt::format("no result after {} s", options_.attempt_time_limit));
-    // A process that was stopped, or a disk that hangs: not the attempt's fault.
-    else if (worker.finishing && !worker.job && now - worker.finish_start > options_.attempt_time_limit)
-      make_again_after_kill(worker);
   }
 
   /// The process ended, or must end, by its attempt's fault. A job that it was finishing is innocent, unless it was

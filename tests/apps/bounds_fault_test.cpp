@@ -102,7 +102,8 @@ TEST_F(Bounds, ABinaryCloudWithMorePointsThanItsHeaderSays) {
   const std::string header =
       "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA binary\n";
   write_text(folder_ / "more.pcd", header + std::string(36, '\0'));
-  expect_refused(run("model_tubes", {folder_ / "more.pcd", "--output", folder_ / "out"}), "1 points of 12 bytes");
+  expect_refused(run("model_tubes", {folder_ / "more.pcd", "--output", folder_ / "out"}),
+                 "2 points of 12 bytes, but there are 12 bytes more");
 }
 
 TEST_F(Bounds, DeepJson) {

@@ -42,7 +42,9 @@ TEST_F(StandardStreams, MessagesThatNobodyTakesEndNothing) {
 TEST_F(StandardStreams, NoFileTakesThePlaceOfAClosedStream) {
   ASSERT_EQ(shell(generate_ + " --shard 1/1 <&- 2>&- >&-") & ~1, 0);
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_ / "data"))
-    if (entry.is_regular_file()) EXPECT_EQ(read_text(entry.path()).find("scenes"), std::string::npos) << entry.path();
+    if (entry.is_regular_file()) {
+      EXPECT_EQ(read_text(entry.path()).find("scenes/s"), std::string::npos) << entry.path();
+    }
   EXPECT_EQ(shell(program_path("generate_dataset") + " --verify data"), 0);
 }
 
@@ -57,7 +59,7 @@ TEST_F(StandardStreams, ResultsThatCannotBeWrittenAreAnError) {
   EXPECT_EQ(shell(program_path("evaluate") + " --help > /dev/full"), 1);
   const ProgramResult result =
       run({"/bin/bash", "-c", program_path("evaluate") + " " + (folder_ / "results") + " > /dev/full"});
-  EXPECT_THAT(result.error, HasSubstr("No space left"));
+  EXPECT_THAT(result.error, HasSubstr("standard output: cannot be written"));
 }
 
 TEST_F(StandardStreams, AFileSizeLimitIsAnErrorThatNamesTheFile) {
@@ -69,9 +71,7 @@ TEST_F(StandardStreams, AFileSizeLimitIsAnErrorThatNamesTheFile) {
 }
 
 TEST_F(StandardStreams, NumbersAreDecimalEverywhere) {
-  write_text(
-      folder_ / "o.yaml",
-      "set: W\ntubes: [010]\ncases: 01\ntube: {length: 0.1, cylinder_count_max: 2}\nscanner: {width: 32, height: 20}\n");
+  write_text(folder_ / "o.yaml", "set: W\ntubes: [010]\ncases: 01\nscanner: {width: 32, height: 20}\n");
   ASSERT_EQ(shell(program_path("generate_dataset") + " o.yaml --output a -q"), 0);
   EXPECT_TRUE(fs::exists(folder_ / "a/W10/001"));
   ASSERT_EQ(shell(program_path("generate_dataset") + " o.yaml --output b --tubes 1 --cases 010 --seed 010 -q"), 0);
