@@ -81,7 +81,7 @@ class KillHarness : public ::testing::TestWithParam<Mode> {
   static void SetUpTestSuite() {
     inputs_ = std::make_unique<TemporaryFolder>();
     write_text(in() + "/c.yaml",
-               "set: K\nseed: 3\ntubes: [1, 2]\ncases: 4\ntube: {length: 0.2, cylinder_count_max: 4}\n"
+               "set: K\nseed: 3\ntubes: [1, 2]\ncases: 4\ntube: {length: 0.2, cylinder_count_max: 6}\n"
                "scanner: {width: 240, height: 150}\n");
     const std::string generate = "generate_dataset " + in() + "/c.yaml -q --output " + in();
     for (const std::string& command :
