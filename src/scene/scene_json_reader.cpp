@@ -1,125 +1,18 @@
-#include "tubebin/scene/scene_json.hpp"
-
 #include <limits>
-#include <stdexcept>
 
 #include "core/json_reader.hpp"
-#include "core/json_writer.hpp"
 #include "scene/pixel_limit.hpp"
+#include "scene/scene_json_format.hpp"
 #include "tubebin/core/atomic_file.hpp"
-#include "tubebin/core/version.hpp"
 #include "tubebin/scene/camera.hpp"
+#include "tubebin/scene/scene_json.hpp"
 
 namespace tubebin::scene {
 namespace {
 
-constexpr const char* kFormat = "tubebin scene";
-/// Grows when a reader of the version before would misunderstand a file; new keys alone don't count.
-constexpr int kFormatVersion = 1;
-
 /// For values that are computed from others, in files that another program or a person may have edited.
 constexpr double kDistanceTolerance = 1e-6;
 constexpr double kPixelTolerance = 1e-6;
-
-// ---- writing
-
-OrderedJson color_to_json(cloud::Color color) { return {color >> 16 & 0xFF, color >> 8 & 0xFF, color & 0xFF}; }
-
-OrderedJson bin_to_json(Bin bin, cloud::Color color) {
-  OrderedJson json = {{"label", 0}, {"color", color_to_json(color)}};
-  json.update(fields_to_json([&](Fields& fields) { describe(fields, bin); }));
-  return json;
-}
-
-OrderedJson scanner_to_json(Scanner scanner, const PixelWindow& window) {
-  const Camera camera(scanner);
-  OrderedJson json = fields_to_json([&](Fields& fields) { describe(fields, scanner); });
-  json["pose"] = to_json(scanner.world_from_scanner());
-  json["intrinsics"] = {{"fx", to_json(camera.focal_length())},
-                        {"fy", to_json(camera.focal_length())},
-                        {"cx", scanner.width / 2.0},
-                        {"cy", scanner.height / 2.0}};
-  if (scanner.effects.any())
-    json["effects"] = fields_to_json([&](Fields& fields) { describe(fields, scanner.effects); });
-  json["window"] = {{"x", window.x}, {"y", window.y}, {"width", window.width}, {"height", window.height}};
-  return json;
-}
-
-OrderedJson further_scanners_to_json(const SceneRecord& record) {
-  OrderedJson scanners = OrderedJson::array();
-  for (std::size_t k = 0; k < record.further_windows.size(); ++k)
-    scanners.push_back(scanner_to_json(record.scene.further_scanners[k], record.further_windows[k]));
-  return scanners;
-}
-
-OrderedJson centerline_to_json(const PlacedTube& placed) {
-  OrderedJson paths = OrderedJson::array();
-  for (const std::vector<int>& path : centerline_paths(placed.tube)) {
-    OrderedJson points = OrderedJson::array();
-    for (const int node : path) points.push_back(to_json(placed.node_in_world(node)));
-    paths.push_back(std::move(points));
-  }
-  return paths;
-}
-
-OrderedJson tube_to_json(const PlacedTube& placed, std::size_t label, cloud::Color color, std::size_t visible_pixels) {
-  const tube::Tube& tube = placed.tube;
-  OrderedJson nodes = OrderedJson::array(), nodes_in_world = OrderedJson::array(), cylinders = OrderedJson::array();
-  for (int i = 0; i < static_cast<int>(tube.nodes.size()); ++i) {
-    nodes.push_back(to_json(tube.nodes[static_cast<std::size_t>(i)]));
-    nodes_in_world.push_back(to_json(placed.node_in_world(i)));
-  }
-  for (const tube::Cylinder& cylinder : tube.cylinders) {
-    cylinders.push_back({{"node_a", cylinder.node_a}, {"node_b", cylinder.node_b}, {"order", cylinder.order}});
-    if (cylinder.radius > 0.0) cylinders.back()["radius"] = to_json(cylinder.radius);
-  }
-  OrderedJson json = {{"id", label}, {"label", label}};
-  if (!tube.kind.empty()) json["kind"] = tube.kind;
-  json.update({{"color", color_to_json(color)},
-               {"radius", to_json(tube.radius)},
-               {"wall_thickness", to_json(tube.wall_thickness)},
-               {"mass", to_json(tube.mass)},
-               {"length", to_json(tube.length())},
-               {"nodes", std::move(nodes)},
-               {"cylinders", std::move(cylinders)},
-               {"pose", to_json(placed.world_from_tube)},
-               {"nodes_in_world", std::move(nodes_in_world)},
-               {"centerline", centerline_to_json(placed)},
-               {"visible_pixels", visible_pixels},
-               {"visible", visible_pixels > 0}});
-  return json;
-}
-
-OrderedJson contact_to_json(const Contact& contact) {
-  return {{"label_a", contact.label_a},
-          {"label_b", contact.label_b},
-          {"position", to_json(contact.position)},
-          {"normal", to_json(contact.normal)},
-          {"depth", to_json(contact.depth)}};
-}
-
-double visible_fraction(std::size_t visible, std::size_t amodal) {
-  return amodal > 0 ? static_cast<double>(visible) / static_cast<double>(amodal) : 0.0;
-}
-
-void add_relations(const SceneRecord& record, const PileRelations& relations, OrderedJson& json) {
-  for (std::size_t k = 0; k < record.scene.tubes.size(); ++k) {
-    OrderedJson& tube = json["tubes"][k];
-    tube["amodal_pixels"] = relations.amodal_pixels[k];
-    tube["visible_fraction"] = visible_fraction(record.tube_pixels[k], relations.amodal_pixels[k]);
-    tube["liftable"] = relations.is_liftable(static_cast<cloud::Label>(k + 1));
-  }
-  json["occlusions"] = OrderedJson::array();
-  for (const Occlusion& occlusion : relations.occlusions)
-    json["occlusions"].push_back(
-        {{"front", occlusion.front}, {"behind", occlusion.behind}, {"pixels", occlusion.pixels}});
-  OrderedJson above = OrderedJson::array();
-  for (const Above& pair : relations.above) above.push_back({{"upper", pair.upper}, {"lower", pair.lower}});
-  json["entanglement"] = {{"above", std::move(above)},
-                          {"groups", entangled_groups(record.scene.tubes.size(), relations.above)}};
-}
-
-// ---- reading
 
 cloud::Color read_color(const JsonPlace& place) {
   cloud::Color color = 0;
@@ -130,10 +23,10 @@ cloud::Color read_color(const JsonPlace& place) {
 
 void read_header(const JsonPlace& root) {
   const JsonPlace format = root.at("format");
-  if (format.text() != kFormat) format.fail(fmt::format("\"{}\"", kFormat));
+  if (format.text() != kSceneJsonFormat) format.fail(fmt::format("\"{}\"", kSceneJsonFormat));
   const JsonPlace version = root.at("format_version");
-  if (version.whole(1, std::numeric_limits<int>::max()) != kFormatVersion)
-    version.fail(fmt::format("{}, the version that this program reads", kFormatVersion));
+  if (version.whole(1, std::numeric_limits<int>::max()) != kSceneJsonVersion)
+    version.fail(fmt::format("{}, the version that this program reads", kSceneJsonVersion));
 }
 
 Scanner read_scanner(const JsonPlace& place) {
@@ -289,40 +182,7 @@ PileRelations read_relations(const JsonPlace& root, const std::vector<std::size_
   return relations;
 }
 
-void check_consistent(const SceneRecord& record) {
-  const std::size_t tubes = record.scene.tubes.size();
-  if (record.colors.size() != tubes + 1 || record.tube_pixels.size() != tubes)
-    throw std::invalid_argument(fmt::format("scene {} of {} tubes with {} colours and {} pixel counts", record.id,
-                                            tubes, record.colors.size(), record.tube_pixels.size()));
-  if (record.further_windows.size() != record.scene.further_scanners.size())
-    throw std::invalid_argument(fmt::format("scene {} of {} further scanners with {} windows", record.id,
-                                            record.scene.further_scanners.size(), record.further_windows.size()));
-  if (record.relations && record.relations->amodal_pixels.size() != tubes)
-    throw std::invalid_argument(fmt::format("scene {} of {} tubes with {} amodal pixel counts", record.id, tubes,
-                                            record.relations->amodal_pixels.size()));
-}
-
 }  // namespace
-
-std::string format_scene_json(const SceneRecord& record) {
-  check_consistent(record);
-  OrderedJson json = {{"format", kFormat},
-                      {"format_version", kFormatVersion},
-                      {"tool_version", tool_version()},
-                      {"units", {{"length", "m"}, {"mass", "kg"}, {"angle_deg", "degree"}, {"image", "pixel"}}},
-                      {"id", record.id},
-                      {"seed", record.seed},
-                      {"bin", bin_to_json(record.scene.bin, record.colors[0])},
-                      {"scanner", scanner_to_json(record.scene.scanner, record.window)},
-                      {"tubes", OrderedJson::array()},
-                      {"contacts", OrderedJson::array()}};
-  if (!record.further_windows.empty()) json["further_scanners"] = further_scanners_to_json(record);
-  for (std::size_t k = 0; k < record.scene.tubes.size(); ++k)
-    json["tubes"].push_back(tube_to_json(record.scene.tubes[k], k + 1, record.colors[k + 1], record.tube_pixels[k]));
-  for (const Contact& contact : record.contacts) json["contacts"].push_back(contact_to_json(contact));
-  if (record.relations) add_relations(record, *record.relations, json);
-  return format_json(json);
-}
 
 SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
   const nlohmann::json json = parse_json(text, name);
