@@ -65,11 +65,13 @@ class Interruption : public ::testing::Test {
 };
 
 TEST_F(Interruption, KillOfTheParentAtAnyMoment) {
+  int kills_of_live_runs = 0;
   for (int round = 0; round < 12; ++round) {
     const std::string data = folder_ / fmt::format("parent_{}", round);
     for (int kill_count = 0; kill_count < 3; ++kill_count) {
       Program program = start(data);
       std::this_thread::sleep_for(std::chrono::microseconds(random_() % 250'000));
+      kills_of_live_runs += program.running() ? 1 : 0;
       kill(program.process(), SIGKILL);
       program.wait();
       wait_until([&] { return processes_of(data).empty(); });  // workers die with their parent
@@ -77,9 +79,11 @@ TEST_F(Interruption, KillOfTheParentAtAnyMoment) {
     }
     expect_completed_as_undisturbed(data);
   }
+  EXPECT_GT(kills_of_live_runs, 0);
 }
 
 TEST_F(Interruption, KillOfWorkersAtAnyMoment) {
+  int kills = 0;
   for (int round = 0; round < 8; ++round) {
     const std::string data = folder_ / fmt::format("worker_{}", round);
     Program program = start(data);
@@ -88,6 +92,7 @@ TEST_F(Interruption, KillOfWorkersAtAnyMoment) {
       for (const pid_t process : processes_of(data))
         if (process != program.process()) {
           kill(process, SIGKILL);
+          ++kills;
           break;
         }
     }
@@ -95,6 +100,7 @@ TEST_F(Interruption, KillOfWorkersAtAnyMoment) {
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(scene_files(data), expected_);
   }
+  EXPECT_GT(kills, 0);
 }
 
 TEST_F(Interruption, StopSignalsEndTheRunAndSayHowToGoOn) {

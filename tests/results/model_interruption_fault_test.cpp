@@ -85,11 +85,13 @@ class ModelInterruption : public ::testing::Test {
 };
 
 TEST_F(ModelInterruption, KillOfTheParentAtAnyMoment) {
+  int kills_of_live_runs = 0;
   for (int round = 0; round < 12; ++round) {
     const std::string results = folder_ / fmt::format("parent_{}", round);
     for (int kill_count = 0; kill_count < 3; ++kill_count) {
       Program program = start(results);
       std::this_thread::sleep_for(std::chrono::microseconds(random_() % 150'000));
+      kills_of_live_runs += program.running() ? 1 : 0;
       kill(program.process(), SIGKILL);
       program.wait();
       wait_until([&] { return processes_of(results).empty(); });  // workers die with their parent
@@ -97,9 +99,11 @@ TEST_F(ModelInterruption, KillOfTheParentAtAnyMoment) {
     }
     expect_completed_as_undisturbed(results);
   }
+  EXPECT_GT(kills_of_live_runs, 0);
 }
 
 TEST_F(ModelInterruption, KillOfWorkersAtAnyMoment) {
+  int kills = 0;
   for (int round = 0; round < 8; ++round) {
     const std::string results = folder_ / fmt::format("worker_{}", round);
     Program program = start(results);
@@ -108,6 +112,7 @@ TEST_F(ModelInterruption, KillOfWorkersAtAnyMoment) {
       for (const pid_t process : processes_of(results))
         if (process != program.process()) {
           kill(process, SIGKILL);
+          ++kills;
           break;
         }
     }
@@ -115,6 +120,7 @@ TEST_F(ModelInterruption, KillOfWorkersAtAnyMoment) {
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result_files(results), expected_);
   }
+  EXPECT_GT(kills, 0);
 }
 
 TEST_F(ModelInterruption, StopSignalsEndTheCallAndSayHowToGoOn) {
