@@ -11,7 +11,6 @@
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/shuffle.hpp"
 #include "tubebin/core/version.hpp"
-#include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/jobs/folder_lock.hpp"
 #include "tubebin/results/cloud_files.hpp"
 

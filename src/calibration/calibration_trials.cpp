@@ -8,8 +8,6 @@
 #include "jobs/stop_note.hpp"
 #include "tubebin/core/file_record.hpp"
 #include "tubebin/core/version.hpp"
-#include "tubebin/dataset/dataset_config.hpp"
-#include "tubebin/dataset/manifest.hpp"
 #include "tubebin/evaluation/micro_recall.hpp"
 
 namespace tubebin::calibration {

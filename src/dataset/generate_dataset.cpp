@@ -7,6 +7,7 @@
 
 #include "dataset/scene_packer.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
+#include "tubebin/jobs/batch.hpp"
 
 namespace tubebin::dataset {
 namespace {
@@ -72,44 +73,36 @@ std::size_t GenerationReport::rejects_total() const {
 
 GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<SceneId>& scenes, int jobs,
                                   jobs::Progress::Style progress_style, const std::string& pack) {
-  const auto start = std::chrono::steady_clock::now();
-  std::vector<std::size_t> missing;
-  for (std::size_t i = 0; i < scenes.size(); ++i)
-    if (!folder.is_complete(scenes[i].name())) missing.push_back(i);
-
   GenerationReport report;
-  report.complete_before = scenes.size() - missing.size();
   std::optional<ScenePacker> packer;
   if (!pack.empty()) packer.emplace(folder, scenes, pack);
-  jobs::Progress progress(missing.size(), "scenes", progress_style);
   std::vector<std::size_t> made;
-  const jobs::PoolEvents events{.on_finished =
-                                    [&](const jobs::JobOutcome& outcome) {
-                                      if (outcome.succeeded) made.push_back(outcome.job);
-                                      if (outcome.succeeded) record_scene(folder, outcome);
-                                      else report.failed.push_back(describe_failure(scenes[outcome.job], outcome));
-                                      if (packer && outcome.succeeded) packer->add(outcome.job);
-                                      else if (packer) packer->give_up(outcome.job);
-                                      progress.count_done();
-                                    },
-                                .on_failed_attempt =
-                                    [&](std::size_t, const jobs::FailedAttempt& attempt) {
-                                      ++report.rejects[attempt.reason];
-                                      progress.count_reject();
-                                    },
-                                .on_tick = [&] { progress.show(); }};
-  const jobs::PoolOptions options{.workers = jobs,
-                                  .attempts_max = folder.config().attempts_max,
-                                  .attempt_time_limit = folder.config().attempt_time_limit};
-  const auto work = [&](std::size_t job, int attempt) { return make_scene(folder, scenes[job], attempt); };
-
-  const jobs::PoolReport pool = jobs::run_jobs(missing, options, work, events);
-  if (packer) packer->finish(pool.signal == 0);
+  const jobs::BatchReport done =
+      jobs::run_batch({.size = scenes.size(),
+                       .noun = "scenes",
+                       .pool = {.workers = jobs,
+                                .attempts_max = folder.config().attempts_max,
+                                .attempt_time_limit = folder.config().attempt_time_limit},
+                       .progress = progress_style,
+                       .is_done = [&](std::size_t job) { return folder.is_complete(scenes[job].name()); },
+                       .work = [&](std::size_t job, int attempt) { return make_scene(folder, scenes[job], attempt); },
+                       .on_finished =
+                           [&](const jobs::JobOutcome& outcome) {
+                             if (outcome.succeeded) made.push_back(outcome.job);
+                             if (outcome.succeeded) record_scene(folder, outcome);
+                             else report.failed.push_back(describe_failure(scenes[outcome.job], outcome));
+                             if (packer && outcome.succeeded) packer->add(outcome.job);
+                             else if (packer) packer->give_up(outcome.job);
+                           },
+                       .on_failed_attempt =
+                           [&](std::size_t, const jobs::FailedAttempt& attempt) { ++report.rejects[attempt.reason]; }});
+  if (packer) packer->finish(done.signal == 0);
   folder.restore_config();
   add_lost(report, folder, scenes, made);
-  report.signal = pool.signal;
-  report.made = pool.succeeded;
-  report.seconds = seconds_since(start);
+  report.complete_before = done.done_before;
+  report.signal = done.signal;
+  report.made = done.made;
+  report.seconds = done.seconds;
   return report;
 }
 

@@ -12,7 +12,7 @@
 #include "tubebin/core/shell_word.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
 #include "tubebin/jobs/atomic_folder.hpp"
-#include "tubebin/jobs/worker_pool.hpp"
+#include "tubebin/jobs/batch.hpp"
 #include "tubebin/scene/dataset_files.hpp"
 
 namespace tubebin::dataset {
@@ -68,22 +68,18 @@ class Merge {
     report_.scenes = scenes_.size();
     for (const MergeSource& source : sources_)
       std::ranges::copy(source.manifest->damaged_lines(), std::back_inserter(report_.problems));
-    std::vector<std::size_t> recorded;
-    for (std::size_t i = 0; i < scenes_.size(); ++i) {
-      if (is_recorded(scenes_[i].name())) recorded.push_back(i);
-      else report_.missing.push_back(scenes_[i].name());
-    }
-    jobs::Progress progress(recorded.size(), "scenes", progress_style);
-    const jobs::PoolEvents events{.on_finished =
-                                      [&](const jobs::JobOutcome& outcome) {
-                                        take_outcome(scenes_[outcome.job].name(), outcome);
-                                        progress.count_done();
-                                      },
-                                  .on_tick = [&] { progress.show(); }};
-    const jobs::PoolOptions options{
-        .workers = jobs, .attempts_max = 1, .attempt_time_limit = output_.config().attempt_time_limit};
-    const auto work = [&](std::size_t job, int) { return take_scene(scenes_[job].name()); };
-    report_.signal = jobs::run_jobs(recorded, options, work, events).signal;
+    std::vector<std::string> recorded;
+    for (const SceneId& scene : scenes_)
+      (is_recorded(scene.name()) ? recorded : report_.missing).push_back(scene.name());
+    report_.signal =
+        jobs::run_batch(
+            {.size = recorded.size(),
+             .noun = "scenes",
+             .pool = {.workers = jobs, .attempts_max = 1, .attempt_time_limit = output_.config().attempt_time_limit},
+             .progress = progress_style,
+             .work = [&](std::size_t job, int) { return take_scene(recorded[job]); },
+             .on_finished = [&](const jobs::JobOutcome& outcome) { take_outcome(recorded[outcome.job], outcome); }})
+            .signal;
     if (report_.signal == 0) conclude();
     return report_;
   }

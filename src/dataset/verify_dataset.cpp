@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-#include "tubebin/jobs/worker_pool.hpp"
+#include "tubebin/jobs/batch.hpp"
 
 namespace tubebin::dataset {
 namespace {
@@ -54,18 +54,20 @@ VerificationReport verify_dataset(const std::string& folder, int jobs, jobs::Pro
     else ++report.missing;
   }
 
-  jobs::Progress progress(recorded.size(), "scenes", progress_style);
-  const jobs::PoolEvents events{.on_finished =
-                                    [&](const jobs::JobOutcome& outcome) {
-                                      add_outcome(report, scenes[outcome.job], outcome);
-                                      progress.count_done();
-                                    },
-                                .on_tick = [&] { progress.show(); }};
-  const auto work = [&](std::size_t job, int) {
-    return check_scene(files, config, scenes[job], *manifest.find(scenes[job].name()));
-  };
-  const jobs::PoolOptions options{.workers = jobs, .attempts_max = 1, .attempt_time_limit = config.attempt_time_limit};
-  report.signal = jobs::run_jobs(recorded, options, work, events).signal;
+  report.signal =
+      jobs::run_batch(
+          {.size = recorded.size(),
+           .noun = "scenes",
+           .pool = {.workers = jobs, .attempts_max = 1, .attempt_time_limit = config.attempt_time_limit},
+           .progress = progress_style,
+           .work =
+               [&](std::size_t job, int) {
+                 const SceneId& id = scenes[recorded[job]];
+                 return check_scene(files, config, id, *manifest.find(id.name()));
+               },
+           .on_finished =
+               [&](const jobs::JobOutcome& outcome) { add_outcome(report, scenes[recorded[outcome.job]], outcome); }})
+          .signal;
   std::sort(report.problems.begin(), report.problems.end());
   std::sort(report.damaged.begin(), report.damaged.end());
   return report;

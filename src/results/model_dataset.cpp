@@ -8,17 +8,17 @@
 #include <numeric>
 #include <set>
 
-#include "core/json_reader.hpp"
+#include "core/json_writer.hpp"
 #include "results/result_files.hpp"
+#include "results/results_index.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/utf8.hpp"
 #include "tubebin/core/version.hpp"
-#include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/evaluation/run_score.hpp"
 #include "tubebin/jobs/atomic_folder.hpp"
+#include "tubebin/jobs/batch.hpp"
 #include "tubebin/jobs/folder_lock.hpp"
-#include "tubebin/jobs/worker_pool.hpp"
 #include "tubebin/modeling/model_json.hpp"
 #include "tubebin/results/cloud_files.hpp"
 #include "tubebin/results/modeling_run.hpp"
@@ -28,8 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kIndex = "index.json";
 
 /// The data set's clouds, of each set and number of tubes the first ones alone where options say so.
 std::vector<CloudFile> choose_clouds(const scene::DatasetFiles& files, const BatchOptions& options) {
@@ -132,26 +130,23 @@ std::string relative_dataset(const BatchOptions& options) {
   const std::string path = fs::relative(fs::absolute(options.dataset), fs::absolute(options.results)).string();
   if (!is_utf8(path))
     throw_io_error("{}: its path is no UTF-8 text, which {} needs; give the data set another name", options.dataset,
-                   kIndex);
+                   kResultsIndexFile);
   return path;
 }
 
-std::string format_index(const BatchOptions& options, const ModelConfig& config, const std::vector<CloudFile>& clouds) {
-  Json scenes = Json::array(), methods = Json::array();
-  for (const CloudFile& cloud : clouds) scenes.push_back(cloud.scene);
-  for (const modeling::ModelingMethod method : options.methods) methods.push_back(name_of(method));
+ResultsIndex index_of(const BatchOptions& options, const ModelConfig& config, const std::vector<CloudFile>& clouds) {
+  ResultsIndex index{.tool_version = tool_version(),
+                     .dataset = relative_dataset(options),
+                     .methods = {},
+                     .ratios = options.ratios,
+                     .seed = config.modeling.seed,
+                     .scenes = {},
+                     .options = {}};
+  for (const CloudFile& cloud : clouds) index.scenes.push_back(cloud.scene);
+  for (const modeling::ModelingMethod method : options.methods) index.methods.push_back(name_of(method));
   ModelConfig described = config;
-  return Json{{"format", "tubebin results 1"},
-              {"tool_version", tool_version()},
-              {"dataset", relative_dataset(options)},
-              {"methods", methods},
-              {"ratios", options.ratios},
-              {"seed", config.modeling.seed},
-              {"scenes", scenes},
-              {"options",
-               Json::parse(modeling::format_options_json([&](Fields& fields) { describe(fields, described); }))}}
-             .dump(1) +
-         "\n";
+  index.options = fields_to_json([&](Fields& fields) { describe(fields, described); });
+  return index;
 }
 
 /// Those whose runs this call does.
@@ -171,42 +166,14 @@ std::vector<CloudFile> deal_clouds(const std::vector<CloudFile>& all, const Batc
   return own;
 }
 
-/// Adds methods, ratios and scenes that the folder holds already; what the runs depend on must be the same.
-std::string merge_index(const std::string& path, const std::string& wanted_text) {
-  Json wanted = parse_ordered_json(wanted_text, path);
-  Json held = parse_ordered_json(read_file(path), path);
-  try {
-    const auto without_run = [](Json options) {  // each run has its own method, ratio and seed
-      options.erase("method");
-      options["filtering"].erase("ratio");
-      return options;
-    };
-    for (const char* key : {"format", "tool_version", "dataset", "seed", "options"}) {
-      const bool is_options = std::string_view(key) == "options";
-      const Json a = is_options ? without_run(held.at(key)) : held.at(key);
-      const Json b = is_options ? without_run(wanted.at(key)) : wanted.at(key);
-      if (a != b)
-        throw_config_error("{}: these results were made with {} = {}, not {}; choose another --output", path, key,
-                           a.dump(), b.dump());
-    }
-    for (const char* key : {"methods", "ratios", "scenes"})
-      for (const Json& value : held.at(key))
-        if (std::find(wanted[key].begin(), wanted[key].end(), value) == wanted[key].end()) wanted[key].push_back(value);
-    std::sort(wanted["ratios"].begin(), wanted["ratios"].end());
-  } catch (const Json::exception& error) {
-    throw_io_error("{}: is no index of results: {}", path, error.what());
-  }
-  return wanted.dump(1) + "\n";
-}
-
 /// All parts of a call write the same index, whose scenes are those of the whole call.
-void settle_index(const OutputFolder& results, const BatchOptions& options, const ModelConfig& config,
-                  const std::vector<CloudFile>& clouds) {
-  const std::string path = results.place(kIndex);
-  const std::string wanted = format_index(options, config, clouds);
-  if (!fs::exists(path) && create_atomically(results.make_entry(kIndex), wanted)) return;
-  const std::string merged = merge_index(path, wanted);
-  if (merged != read_file(path)) write_atomically(results.make_entry(kIndex), merged);
+void write_index(const OutputFolder& results, const ResultsIndex& wanted) {
+  const std::string path = results.place(kResultsIndexFile);
+  const FolderEntry entry = results.make_entry(kResultsIndexFile);
+  if (!fs::exists(path) && create_atomically(entry, format_results_index(wanted))) return;
+  const std::string held = read_file(path);
+  const std::string merged = format_results_index(merge_results_index(parse_results_index(held, path), wanted, path));
+  if (merged != held) write_atomically(entry, merged);
 }
 
 ConfinedPath failures_file(const BatchOptions& options) {
@@ -293,42 +260,40 @@ BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config
   const Batch batch{dataset, scene::DatasetHashes(dataset), OutputFolder(options.results)};
   const jobs::FolderLock lock(batch.results,
                               options.shard ? jobs::FolderLock::Kind::part : jobs::FolderLock::Kind::exclusive);
-  settle_index(batch.results, options, config, all_clouds);
+  const ResultsIndex index = index_of(options, config, all_clouds);
+  write_index(batch.results, index);
   const NothingUnfinished nothing_unfinished(batch.results, options.shard.has_value(), clouds);
 
   const std::vector<ModelingRun> runs = list_runs(options, clouds);
   CompleteRuns complete(options, batch.hashes);
-  std::vector<std::size_t> missing;
-  for (std::size_t i = 0; i < runs.size(); ++i)
-    if (!complete.contains(runs[i])) missing.push_back(i);
-
-  BatchReport report{.runs = runs.size(), .complete_before = runs.size() - missing.size(), .failed = {}};
-  jobs::Progress progress(missing.size(), "clouds", progress_style);
+  BatchReport report{.runs = runs.size(), .failed = {}};
   std::string failures;
   const auto add_failure = [&](const ModelingRun& run, const std::string& why) {
     report.failed.push_back(fmt::format("{}: {}", run.folder(), why));
     failures += format_failure(run, why) + "\n";
   };
   std::vector<std::size_t> made;
-  const jobs::PoolEvents events{.on_finished =
-                                    [&](const jobs::JobOutcome& outcome) {
-                                      progress.count_done();
-                                      if (outcome.succeeded) made.push_back(outcome.job);
-                                      else add_failure(runs[outcome.job], outcome.failed.back().for_people());
-                                    },
-                                .on_tick = [&] { progress.show(); }};
-  const jobs::PoolOptions pool_options{
-      .workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit};
-  const jobs::PoolReport pool = jobs::run_jobs(
-      missing, pool_options, [&](std::size_t job, int) { return do_run(runs[job], batch, options, config); }, events);
+  const jobs::BatchReport done =
+      jobs::run_batch({.size = runs.size(),
+                       .noun = "clouds",
+                       .pool = {.workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit},
+                       .progress = progress_style,
+                       .is_done = [&](std::size_t job) { return complete.contains(runs[job]); },
+                       .work = [&](std::size_t job, int) { return do_run(runs[job], batch, options, config); },
+                       .on_finished =
+                           [&](const jobs::JobOutcome& outcome) {
+                             if (outcome.succeeded) made.push_back(outcome.job);
+                             else add_failure(runs[outcome.job], outcome.failed.back().for_people());
+                           }});
   for (const std::size_t i : made)
     if (!batch.results.has_folder(runs[i].folder())) add_failure(runs[i], "was removed after it was made");
-  settle_index(batch.results, options, config, all_clouds);
+  write_index(batch.results, index);
   const FolderEntry failures_entry = batch.results.make_entry(failures_file(options));
   if (!failures.empty()) write_atomically(failures_entry, failures);
   else remove_entry(failures_entry);
-  report.made = pool.succeeded;
-  report.signal = pool.signal;
+  report.complete_before = done.done_before;
+  report.made = done.made;
+  report.signal = done.signal;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 } catch (const fs::filesystem_error& error) {

@@ -12,14 +12,12 @@
 namespace tubebin::results {
 namespace {
 
-constexpr const char* kIndexFormat = "tubebin results 1";
 constexpr const char* kResultFormat = "tubebin result 1";
 constexpr int kMaxPoints = std::numeric_limits<int>::max();
 constexpr std::uint64_t kMaxLabel = std::numeric_limits<std::uint32_t>::max();
 // Tubes are compared at samples 5 mm apart, so there must be an end to their length.
 constexpr Limits kCoordinate = {-1000.0, 1000.0};
 constexpr double kMaxModelLength = 10'000.0;
-constexpr double kRunsMax = 20e6;
 constexpr Limits kSeconds = {0.0, 1e9};
 
 void check_format(const JsonPlace& root, const char* expected) {
@@ -63,38 +61,6 @@ evaluation::Contingency read_contingency(const JsonPlace& root, const std::strin
 }
 
 }  // namespace
-
-ResultsIndex parse_results_index(std::string_view text, const std::string& name) {
-  const nlohmann::json json = parse_json(text, name);
-  const JsonPlace root(json, name);
-  check_format(root, kIndexFormat);
-  ResultsIndex index;
-  index.dataset = root.at("dataset").text();
-  for (const JsonPlace& method : root.at("methods").elements()) index.methods.push_back(method.text());
-  for (const JsonPlace& ratio : root.at("ratios").elements()) index.ratios.push_back(ratio.number());
-  for (const JsonPlace& scene : root.at("scenes").elements())
-    index.scenes.push_back(ConfinedPath::parse(scene.text(), name + ": /scenes"));
-  // Three short lists may ask for many runs.
-  if (static_cast<double>(index.methods.size()) * static_cast<double>(index.ratios.size()) *
-          static_cast<double>(index.scenes.size()) >
-      kRunsMax)
-    throw_io_error("{}: {} methods at {} ratios of {} scenes are too many runs; valid: up to {}", name,
-                   index.methods.size(), index.ratios.size(), index.scenes.size(), kRunsMax);
-  nlohmann::ordered_json configuration;
-  for (const char* key : {"tool_version", "dataset", "seed", "options"}) {
-    root.at(key);
-    configuration[key] = json[key];
-  }
-  index.configuration = configuration.dump(2);
-  configuration.erase("dataset");
-  nlohmann::ordered_json& options = configuration["options"];
-  if (options.is_object()) {
-    options.erase("method");
-    if (options.contains("filtering") && options["filtering"].is_object()) options["filtering"].erase("ratio");
-  }
-  index.conditions = configuration.dump();
-  return index;
-}
 
 RunCounts parse_run_counts(std::string_view text, const std::string& name) {
   const nlohmann::json json = parse_json(text, name);

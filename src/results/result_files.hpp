@@ -1,4 +1,4 @@
-/// The files of a results folder, one parser each (docs/results_format.md). All throw IoError, which names the file and
+/// The files of the runs in a results folder, one parser each (docs/results_format.md). All throw IoError, which names the file and
 /// the place in it, for text that is not as that page says; nothing that the text states is trusted before it is checked.
 #pragma once
 
@@ -13,16 +13,6 @@
 
 namespace tubebin::results {
 
-/// index.json: what the folder is to hold.
-struct ResultsIndex {
-  std::string dataset;  ///< as it stands there, relative to the folder
-  std::vector<std::string> methods;
-  std::vector<double> ratios;
-  std::vector<std::string> scenes;
-  std::string configuration;  ///< what all runs depend on, as JSON
-  std::string conditions;     ///< the same without the data set's place and what each run has its own of
-};
-
 /// result.json: the points of one run.
 struct RunCounts {
   std::string scene;
@@ -34,7 +24,6 @@ struct RunCounts {
   evaluation::Contingency contingency;
 };
 
-ResultsIndex parse_results_index(std::string_view text, const std::string& name);
 RunCounts parse_run_counts(std::string_view text, const std::string& name);
 /// model.json: the centreline of each tube.
 std::vector<evaluation::Centerline> parse_model_centerlines(std::string_view text, const std::string& name);

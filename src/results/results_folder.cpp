@@ -8,6 +8,7 @@
 
 #include "evaluation/parallel.hpp"
 #include "results/result_files.hpp"
+#include "results/results_index.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/scene/dataset_files.hpp"
@@ -167,7 +168,7 @@ FolderRuns read_folder(const std::string& folder, const ResultsOptions& options,
       },
       options.on_progress);
 
-  FolderRuns read{.folder = folder, .conditions = index.conditions, .names = {}};
+  FolderRuns read{.folder = folder, .conditions = index.conditions(), .names = {}};
   const std::size_t runs_before = evaluation.runs.size();
   const std::size_t missing_before = evaluation.missing.size();
   std::size_t without_truth = 0;
@@ -184,7 +185,7 @@ FolderRuns read_folder(const std::string& folder, const ResultsOptions& options,
                     "DIR says where the data set is)",
                     without_truth, scenes.size(), index.dataset));
   evaluation.source += (evaluation.source.empty() ? "" : ", ") + folder;
-  evaluation.configuration += fmt::format("{}:\n{}\n", folder, index.configuration);
+  evaluation.configuration += fmt::format("{}:\n{}\n", folder, index.configuration());
   if (const std::string config = index.dataset + "/config.yaml"; fs::exists(config))
     evaluation.configuration += fmt::format("\n{}:\n{}\n", config, read_file(config));
   for (std::size_t i = runs_before; i < evaluation.runs.size(); ++i) read.names.insert(evaluation.runs[i].key.name());

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "results/result_files.hpp"
+#include "results/results_index.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/yaml.hpp"
