@@ -42,7 +42,7 @@ void remove_what_is_in(const FolderEntry& entry) {
 }
 
 /// Of long names a part, so that what follows fits into a file system's 255 bytes.
-std::string unfinished_start(const std::string& name) { return "." + name.substr(0, 150) + "."; }
+std::string unfinished_start(const std::string& name) { return fmt::format(".{}.", name.substr(0, 150)); }
 
 /// So that its bytes under other names stay as they are.
 void replace_by_copy(const FolderEntry& entry) {
