@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/version.hpp"
 
 namespace tubebin::dataset {
 namespace {
