@@ -15,6 +15,7 @@
 #include "tubebin/core/shell_word.hpp"
 #include "tubebin/dataset/manifest.hpp"
 #include "tubebin/evaluation/html_report.hpp"
+#include "tubebin/evaluation/result_plots.hpp"
 #include "tubebin/evaluation/result_tables.hpp"
 #include "tubebin/jobs/progress.hpp"
 #include "tubebin/results/labelled_points.hpp"
@@ -90,7 +91,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   auto* html = app.add_option("--html", arguments.html, "Also write a report: one file with tables, plots and pictures")
                    ->type_name("FILE");
   auto* plots = app.add_option("--plots", arguments.plots, "Also write the plots as .svg files")->type_name("DIR");
-  auto* paper = app.add_flag("--paper", arguments.paper, "Also compare with the paper's figures and claims");
+  auto* paper = app.add_flag("--paper", arguments.paper, "Compare with the paper: its figures, tables and claims");
   app.add_flag("-q,--quiet", arguments.quiet, "No progress");
   app.add_option("-j,--jobs", arguments.jobs, "Threads")->check(CLI::Range(1, 1024))->capture_default_str();
   filtered->needs(labeled)->excludes(folder)->excludes(predictions);
@@ -168,17 +169,23 @@ void write_plots(const std::string& folder, const std::vector<evaluation::Plot>&
     write_file_atomically(folder + "/" + plot.name + ".svg", evaluation::format_svg(plot));
 }
 
+std::vector<evaluation::Plot> plots_of(const evaluation::Evaluation& evaluation,
+                                       const evaluation::GenerationSeconds* generation) {
+  const std::vector<evaluation::GroupSummary> groups = evaluation::summarize(evaluation.runs);
+  return generation == nullptr ? evaluation::result_plots(groups) : evaluation::paper_plots(groups, *generation);
+}
+
 int evaluate_folders(const Arguments& arguments) {
   const evaluation::Evaluation evaluation = read_evaluation(arguments);
-  const evaluation::GenerationSeconds generation = generation_seconds(evaluation);
-  fmt::print("{}", evaluation::format_results(evaluation, kFormats.at(arguments.format),
-                                              arguments.paper ? &generation : nullptr));
+  std::optional<evaluation::GenerationSeconds> paper;
+  if (arguments.paper) paper = generation_seconds(evaluation);
+  const evaluation::GenerationSeconds* generation = paper ? &*paper : nullptr;
+  fmt::print("{}", evaluation::format_results(evaluation, kFormats.at(arguments.format), generation));
   print_gaps(evaluation, arguments.folders);
   if (!arguments.html.empty())
     write_file_atomically(arguments.html,
                           evaluation::format_html_report({evaluation, generation, results::labelled_points}));
-  if (!arguments.plots.empty())
-    write_plots(arguments.plots, evaluation::paper_plots(evaluation::summarize(evaluation.runs), generation));
+  if (!arguments.plots.empty()) write_plots(arguments.plots, plots_of(evaluation, generation));
   const bool is_complete = evaluation.missing.empty() && evaluation.failed.empty();
   return static_cast<int>(is_complete ? ExitCode::done : ExitCode::incomplete);
 }

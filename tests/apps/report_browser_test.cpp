@@ -57,7 +57,7 @@ TEST(ReportInBrowser, OpensWithoutErrorsAndShowsEverything) {
   keep_clouds(folder.path(), "B20/001", 20, sweep.ratios);
   const std::string report = (folder.path() / "report.html").string();
   const CommandResult evaluated = testing::run_command(
-      fmt::format("{}/evaluate {}/results --html {} 2>&1", TUBEBIN_BIN_DIR, folder.path().string(), report));
+      fmt::format("{}/evaluate {}/results --paper --html {} 2>&1", TUBEBIN_BIN_DIR, folder.path().string(), report));
   ASSERT_EQ(evaluated.exit_code, 0) << evaluated.output;
 
   const std::string log = (folder.path() / "browser.log").string();

@@ -5,6 +5,7 @@
 #include "support/synthetic_results.hpp"
 #include "tubebin/evaluation/html_report.hpp"
 #include "tubebin/evaluation/paper_figures.hpp"
+#include "tubebin/evaluation/result_plots.hpp"
 #include "tubebin/results/results_folder.hpp"
 
 namespace tubebin::evaluation {
@@ -92,6 +93,27 @@ TEST(PaperPlots, ShowOursAndThePapers) {
   EXPECT_THAT(plots[3].series, SizeIs(10));
 }
 
+TEST(ResultPlots, ShowWhatWasMeasuredAlone) {
+  const std::vector<GroupSummary> groups = summarize(synthetic_evaluation(paper_sweep()).runs);
+  const std::vector<Plot> plots = result_plots(groups);
+  ASSERT_THAT(plots, SizeIs(4));
+  EXPECT_EQ(plots[0].name, "recall_by_tubes");
+  for (const Plot& plot : plots) {
+    EXPECT_THAT(plot.series, SizeIs(2));  // sets A and B
+    EXPECT_THAT(format_svg(plot), AllOf(Not(HasSubstr("paper")), Not(HasSubstr("Figure"))));
+  }
+  EXPECT_THAT(plots[0].series[1].points, SizeIs(6));
+  EXPECT_THAT(plots[3].series[1].points, SizeIs(5));
+}
+
+TEST(ResultPlots, OneRatioMakesNoPlotByRatio) {
+  testing::SyntheticSweep sweep;
+  sweep.ratios = {0.3};
+  const std::vector<Plot> plots = result_plots(summarize(synthetic_evaluation(sweep).runs));
+  ASSERT_THAT(plots, SizeIs(2));
+  EXPECT_EQ(plots[1].name, "seconds_by_tubes");
+}
+
 TEST(PaperFigures, AreThePapers) {
   EXPECT_DOUBLE_EQ(paper_figures().generation_seconds.at("A").at(20), 28.10);
   EXPECT_DOUBLE_EQ(paper_figures().generation_seconds.at("B").at(1), 2.68);
@@ -152,7 +174,7 @@ TEST(Claims, OfTheGenerator) {
 
 TEST(Report, IsSelfContainedAndWellFormed) {
   const Evaluation evaluation = synthetic_evaluation(paper_sweep());
-  std::string html = format_html_report({evaluation, {}, {}});
+  std::string html = format_html_report({evaluation});
   EXPECT_THAT(html, Not(HasSubstr("<script")));
   html = std::regex_replace(html, std::regex("http://www.w3.org/2000/svg"), "");
   EXPECT_THAT(html, AllOf(Not(HasSubstr("http:")), Not(HasSubstr("https:")), Not(HasSubstr("url("))));
@@ -160,10 +182,21 @@ TEST(Report, IsSelfContainedAndWellFormed) {
   expect_balanced(html);
 }
 
+TEST(Report, NamesThePaperWhereItIsAskedForAlone) {
+  const Evaluation evaluation = synthetic_evaluation(paper_sweep());
+  const GenerationSeconds generation;
+  const std::string general = format_html_report({evaluation});
+  const std::string compared = format_html_report({evaluation, &generation});
+  for (const char* words : {"Figure 8", "Figure 9", "Table 2", "confirmed", "Hollow markers", "paper"}) {
+    EXPECT_THAT(general, Not(HasSubstr(words)));
+    EXPECT_THAT(compared, HasSubstr(words));
+  }
+}
+
 TEST(Report, EscapesWhatFilesSay) {
   Evaluation evaluation = synthetic_evaluation({});
   evaluation.notes.push_back("<script>alert(1)</script>");
-  EXPECT_THAT(format_html_report({evaluation, {}, {}}), Not(HasSubstr("<script>")));
+  EXPECT_THAT(format_html_report({evaluation}), Not(HasSubstr("<script>")));
 }
 
 TEST(Report, PicturesTheWorstAndTheBestRunsOfDifferentScenes) {

@@ -134,13 +134,13 @@ TEST_F(ResultsFolder, GroupsAreMeansOverTheirCases) {
 TEST_F(ResultsFolder, TablesHoldTheFigures) {
   const evaluation::Evaluation evaluation = read_results({results()}, {});
   const std::vector<evaluation::GroupSummary> groups = evaluation::summarize(evaluation.runs);
-  const evaluation::Table figure_8 = evaluation::figure_8_table(groups, "centerline");
-  EXPECT_THAT(figure_8.headers, ElementsAre("tubes", "set A", "set B"));
-  ASSERT_THAT(figure_8.rows, SizeIs(3));
-  EXPECT_NEAR(*figure_8.rows[1][2].value, 1.0 - 26.5 / 1000.0, 1e-12);
-  const evaluation::Table figure_9 = evaluation::figure_9_table(groups, "centerline");
-  EXPECT_THAT(figure_9.title, HasSubstr("3 tubes"));  // the nearest to the paper's ten
-  EXPECT_THAT(figure_9.rows, SizeIs(2));
+  const evaluation::Table by_tubes = evaluation::recall_by_tubes_table(groups, "centerline");
+  EXPECT_THAT(by_tubes.headers, ElementsAre("tubes", "set A", "set B"));
+  ASSERT_THAT(by_tubes.rows, SizeIs(3));
+  EXPECT_NEAR(*by_tubes.rows[1][2].value, 1.0 - 26.5 / 1000.0, 1e-12);
+  const evaluation::Table by_ratio = evaluation::recall_by_ratio_table(groups, "centerline");
+  EXPECT_THAT(by_ratio.title, HasSubstr("3 tubes"));  // the nearest to ten
+  EXPECT_THAT(by_ratio.rows, SizeIs(2));
   const evaluation::Table times = evaluation::time_grid(groups, "centerline", "B");
   EXPECT_THAT(times.headers, ElementsAre("ratio", "1", "2", "3"));
   EXPECT_DOUBLE_EQ(*times.rows[1][3].value, 0.07);
@@ -157,7 +157,32 @@ TEST_F(ResultsFolder, FormatsAgree) {
   EXPECT_THAT(csv, HasSubstr(fmt::format("{}", json["groups"][0]["micro_recall"].get<double>())));
   EXPECT_THAT(evaluation::format_results(evaluation, evaluation::TableFormat::markdown),
               HasSubstr("| ratio | 1 | 2 | 3 |"));
-  EXPECT_THAT(evaluation::format_results(evaluation, evaluation::TableFormat::table), HasSubstr("(Figure 8)"));
+}
+
+TEST_F(ResultsFolder, ThePaperIsNamedWhereItIsAskedForAlone) {
+  const evaluation::Evaluation evaluation = read_results({results()}, {});
+  const evaluation::GenerationSeconds generation;
+  for (const auto format : {evaluation::TableFormat::table, evaluation::TableFormat::markdown}) {
+    const std::string general = evaluation::format_results(evaluation, format);
+    for (const char* word : {"Figure", "(Table", "paper", "confirmed"})
+      EXPECT_EQ(general.find(word), std::string::npos) << word;
+    const std::string compared = evaluation::format_results(evaluation, format, &generation);
+    for (const char* word : {"(Figure 8)", "(Figure 9)", "(Table 2)", "Claims of Section 6.2"})
+      EXPECT_THAT(compared, HasSubstr(word));
+  }
+}
+
+/// The columns that programs read (docs/metrics.md).
+TEST_F(ResultsFolder, ColumnsOfGroupsStay) {
+  const evaluation::Table table = evaluation::group_table(evaluation::summarize(read_results({results()}, {}).runs));
+  EXPECT_THAT(table.headers,
+              ElementsAre("method", "set", "tubes", "ratio", "runs", "failed", "micro_recall", "micro_recall_low",
+                          "micro_recall_high", "seconds", "seconds_low", "seconds_high", "tube_recall",
+                          "tube_precision", "tube_iou", "panoptic_quality", "ap50", "ap", "adjusted_rand_index",
+                          "detected", "over_segmented", "under_segmented", "missed", "noise", "tube_count_error",
+                          "tube_count_bias", "centerline_model_mean_m", "centerline_model_p95_m",
+                          "centerline_truth_mean_m", "centerline_truth_p95_m"));
+  for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.headers.size());
 }
 
 TEST(SceneName, TellsSetTubesAndCase) {

@@ -15,8 +15,8 @@ using ReadPoints = std::function<std::optional<LabelledPoints>(const RunScore&)>
 
 struct ReportInput {
   const Evaluation& evaluation;
-  GenerationSeconds generation_seconds;
-  ReadPoints read_points;  ///< for the pictures; may be empty
+  const GenerationSeconds* generation = nullptr;  ///< maybe empty: compare with the paper; null: don't
+  ReadPoints read_points = {};                    ///< for the pictures; may be empty
 };
 
 std::string format_html_report(const ReportInput& input);

@@ -40,7 +40,10 @@ Table paper_table_1(const GenerationSeconds& seconds);
 /// Table 2 (set A) with the paper's columns beside ours.
 Table paper_table_2(const std::vector<GroupSummary>& groups, const std::string& method);
 
-/// Everything above that has rows: claims, then Tables 1 and 2.
+/// Figures 8 and 9 as tables: our values under the paper's conditions, or the nearest to them.
+std::vector<Table> figure_tables(const std::vector<GroupSummary>& groups, const std::string& method);
+
+/// Everything above that has rows: claims, then tables and figures.
 std::vector<Table> paper_tables(const Evaluation& evaluation, const std::vector<GroupSummary>& groups,
                                 const GenerationSeconds& seconds);
 

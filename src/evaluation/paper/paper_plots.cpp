@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "evaluation/statistics.hpp"
 #include "tubebin/evaluation/paper_comparison.hpp"
 #include "tubebin/evaluation/paper_figures.hpp"
+#include "tubebin/evaluation/result_plots.hpp"
 #include "tubebin/evaluation/result_tables.hpp"
 
 namespace tubebin::evaluation {
@@ -16,57 +16,29 @@ constexpr int kBlack = 6;
 PlotPoint point(double x, const Interval& interval) { return {x, interval.mean, interval.low, interval.high}; }
 PlotPoint point(double x, double y) { return {x, y, y, y}; }
 
-/// Micro-recall of every method and set, over the groups that `x_of` gives a place.
-template <typename PlaceOf>
-Plot recall_plot(const std::vector<GroupSummary>& groups, PlaceOf x_of) {
-  Plot plot;
-  const std::vector<std::string> methods = methods_of(groups);
-  for (std::size_t m = 0; m < methods.size(); ++m) {
-    for (const std::string& set : sets_of(groups)) {
-      PlotSeries series;
-      series.name = fmt::format("{}, set {}", methods[m], set);
-      series.color = static_cast<int>(plot.series.size());
-      series.style = m == 0 ? SeriesStyle::measured : SeriesStyle::second;
-      for (const GroupSummary& group : groups)
-        if (const auto x = x_of(group.key); group.key.method == methods[m] && group.key.set == set && x)
-          series.points.push_back(point(*x, group.micro_recall));
-      if (!series.points.empty()) plot.series.push_back(std::move(series));
-    }
-  }
-  plot.y_label = "mean micro-recall";
-  return plot;
-}
-
-void add_paper_points(Plot& plot, const std::map<int, double>& points, const std::string& name) {
+void add_paper_points(Plot& plot, const std::map<double, double>& points, const std::string& name) {
   PlotSeries series{name, kBlack, SeriesStyle::paper, {}, false};
   for (const auto& [x, y] : points) series.points.push_back(point(x, y));
   if (!plot.series.empty()) plot.series.push_back(std::move(series));
 }
 
 Plot figure_8(const std::vector<GroupSummary>& groups) {
-  const double ratio = figure_conditions(groups).figure_8_ratio;
-  Plot plot = recall_plot(groups, [&](const GroupKey& key) {
-    return key.ratio == ratio ? std::optional<double>(key.tubes) : std::nullopt;
-  });
+  Plot plot = recall_by_tubes_plot(groups);
   plot.name = "figure_8";
-  plot.title = fmt::format("Figure 8: micro-recall by number of tubes, ratio {}", ratio);
-  plot.x_label = "number of tubes";
-  if (ratio == 0.3) add_paper_points(plot, paper_figures().micro_recall_set_b, "paper, set B (values in its text)");
+  plot.title = "Figure 8: " + plot.title;
+  const auto& paper = paper_figures().micro_recall_set_b;
+  if (shown_conditions(groups).ratio == Conditions().ratio)
+    add_paper_points(plot, {paper.begin(), paper.end()}, "paper, set B (values in its text)");
   return plot;
 }
 
 Plot figure_9(const std::vector<GroupSummary>& groups) {
-  const int tubes = figure_conditions(groups).figure_9_tubes;
-  Plot plot = recall_plot(groups, [&](const GroupKey& key) {
-    return key.tubes == tubes ? std::optional<double>(key.ratio) : std::nullopt;
-  });
+  Plot plot = recall_by_ratio_plot(groups);
   plot.name = "figure_9";
-  plot.title = fmt::format("Figure 9: micro-recall by downsampling ratio, {} tubes", tubes);
-  plot.x_label = "downsampling ratio";
+  plot.title = "Figure 9: " + plot.title;
   const auto& paper = paper_figures().micro_recall_set_b;
-  if (paper.contains(tubes) && !plot.series.empty())
-    plot.series.push_back(
-        {"paper, set B (value in its text)", kBlack, SeriesStyle::paper, {point(0.3, paper.at(tubes))}, false});
+  if (const auto value = paper.find(shown_conditions(groups).tubes); value != paper.end())
+    add_paper_points(plot, {{Conditions().ratio, value->second}}, "paper, set B (value in its text)");
   return plot;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "tubebin/evaluation/result_plots.hpp"
 #include "tubebin/evaluation/result_tables.hpp"
 
 namespace tubebin::evaluation {
@@ -116,28 +117,28 @@ std::string summary_html(const Evaluation& evaluation, const std::vector<GroupSu
   return html + format_html(transpose(overview_table(evaluation), 2));
 }
 
-std::string plots_html(const std::vector<Plot>& plots) {
+std::string plots_html(const ReportInput& input, const std::vector<GroupSummary>& groups) {
+  const std::vector<Plot> plots =
+      input.generation == nullptr ? result_plots(groups) : paper_plots(groups, *input.generation);
   if (plots.empty()) return "";
   std::string html = "<div class=\"plots\">\n";
   for (const Plot& plot : plots) html += fmt::format("<figure id=\"{}\">{}</figure>\n", plot.name, format_svg(plot));
-  return html +
-         "</div>\n<p class=\"note\">Bars are 95 % bootstrap intervals. Hollow markers and dotted lines are "
-         "the paper's "
-         "values, measured by its authors on an Intel i7-8750H.</p>\n";
+  return html + fmt::format("</div>\n<p class=\"note\">Bars are 95 % bootstrap intervals.{}</p>\n",
+                            input.generation == nullptr
+                                ? ""
+                                : " Hollow markers and dotted lines are the paper's values, measured "
+                                  "by its authors on an Intel i7-8750H.");
+}
+
+std::string tables_html(const std::vector<Table>& tables) {
+  std::string html;
+  for (const Table& table : tables) html += format_html(table);
+  return html;
 }
 
 std::string paper_html(const ReportInput& input, const std::vector<GroupSummary>& groups) {
-  std::string html;
-  for (const Table& table : paper_tables(input.evaluation, groups, input.generation_seconds))
-    html += format_html(table);
-  return html;
-}
-
-std::string tables_html(const Evaluation& evaluation, const std::vector<GroupSummary>& groups) {
-  std::string html;
-  const std::vector<Table> tables = result_tables(evaluation, groups);
-  for (std::size_t i = 1; i < tables.size(); ++i) html += format_html(tables[i]);  // the overview stands in the summary
-  return html;
+  if (input.generation == nullptr) return "";
+  return tables_html(paper_tables(input.evaluation, groups, *input.generation));
 }
 
 std::string image(const std::string& png, const ScenePicture& picture, const char* what) {
@@ -199,15 +200,17 @@ std::string format_html_report(const ReportInput& input) {
   std::string html = kHead;
   html += fmt::format("<header><h1>How well the tubes were found</h1>\n<p class=\"soft\">{}, tubebin {}</p></header>\n",
                       escape_html(evaluation.source), TUBEBIN_VERSION);
+  html += "<nav><a href=\"#summary\">Summary</a><a href=\"#plots\">Plots</a>";
+  if (input.generation != nullptr) html += "<a href=\"#paper\">Against the paper</a>";
   html +=
-      "<nav><a href=\"#summary\">Summary</a><a href=\"#plots\">Plots</a><a href=\"#paper\">Against the "
-      "paper</a>"
       "<a href=\"#tables\">Tables</a><a href=\"#scenes\">Scenes</a><a "
       "href=\"#configuration\">Configuration</a></nav>\n<main>\n";
   html += section("summary", "Summary", summary_html(evaluation, groups));
-  html += section("plots", "Plots", plots_html(paper_plots(groups, input.generation_seconds)));
+  html += section("plots", "Plots", plots_html(input, groups));
   html += section("paper", "Against the paper", paper_html(input, groups));
-  html += section("tables", "Tables", tables_html(evaluation, groups));
+  html += section("tables", "Tables",
+                  (input.generation == nullptr ? tables_html(condition_tables(groups)) : "") +
+                      tables_html(detail_tables(evaluation, groups)));
   html += section("scenes", "Worst and best scenes", pictures_html(input));
   if (!evaluation.configuration.empty())
     html += section("configuration", "Configuration",

@@ -126,9 +126,10 @@ std::string format_results(const Evaluation& evaluation, TableFormat format, con
   const std::vector<GroupSummary> groups = summarize(evaluation.runs);
   if (format == TableFormat::json) return format_json(evaluation, groups, generation);
   if (format == TableFormat::csv) return format_csv(group_table(groups));
-  std::vector<Table> tables;
-  if (generation != nullptr) tables = paper_tables(evaluation, groups, *generation);
-  for (Table& table : result_tables(evaluation, groups)) tables.push_back(std::move(table));
+  std::vector<Table> tables =
+      generation != nullptr ? paper_tables(evaluation, groups, *generation) : condition_tables(groups);
+  tables.insert(tables.begin(), transpose(overview_table(evaluation), 2));
+  for (Table& table : detail_tables(evaluation, groups)) tables.push_back(std::move(table));
   std::string text;
   for (const Table& table : tables) {
     if (!text.empty()) text += "\n";

@@ -7,19 +7,16 @@
 #include <map>
 #include <set>
 
+#include "evaluation/report/measures.hpp"
+
 namespace tubebin::evaluation {
 namespace {
-
-constexpr double kPaperFigure8Ratio = 0.3;
-constexpr int kPaperFigure9Tubes = 10;
 
 Cell interval_cell(const Interval& interval, int decimals) {
   return {fmt::format("{:.{}f} [{:.{}f}, {:.{}f}]", interval.mean, decimals, interval.low, decimals, interval.high,
                       decimals),
           interval.mean};
 }
-
-Cell millimetre_cell(double metres) { return {fmt::format("{:.2f}", 1000.0 * metres), metres}; }
 
 template <typename Value, typename Get>
 std::vector<Value> distinct(const std::vector<GroupSummary>& groups, Get get) {
@@ -83,24 +80,6 @@ Table grid(std::string title, const std::vector<GroupSummary>& groups, const std
   return table;
 }
 
-const std::vector<std::string> kMeasureHeaders = {
-    "tube recall",      "tube precision",  "tube IoU",          "panoptic quality", "AP at 0.5", "AP at 0.5:0.95",
-    "Rand index",       "detected",        "over-segmented",    "under-segmented",  "missed",    "noise",
-    "tube count error", "tube count bias", "model to tube, mm", "tube to model, mm"};
-
-void append_measures(const PooledScores& pooled, std::vector<Cell>& row) {
-  for (const double value : {pooled.recall, pooled.precision, pooled.iou, pooled.panoptic_quality,
-                             pooled.average_precision_50, pooled.average_precision, pooled.adjusted_rand_index})
-    row.push_back(number_cell(value, 3));
-  for (const double share :
-       {pooled.detected, pooled.over_segmented, pooled.under_segmented, pooled.missed, pooled.noise})
-    row.push_back(percent_cell(share));
-  row.push_back(number_cell(pooled.tube_count_error, 2));
-  row.push_back({fmt::format("{:+.2f}", pooled.tube_count_bias), pooled.tube_count_bias});
-  row.push_back(pooled.centerlines > 0 ? millimetre_cell(pooled.centerline_model_mean) : Cell());
-  row.push_back(pooled.centerlines > 0 ? millimetre_cell(pooled.centerline_truth_mean) : Cell());
-}
-
 /// The visibility table of each method with its classes as columns.
 std::vector<Table> visibility_tables(const Evaluation& evaluation) {
   std::map<std::string, Table> by_method;
@@ -119,7 +98,7 @@ std::vector<Table> visibility_tables(const Evaluation& evaluation) {
 }
 
 std::vector<std::string> with_measures(std::vector<std::string> headers) {
-  headers.insert(headers.end(), kMeasureHeaders.begin(), kMeasureHeaders.end());
+  append_measure_headers(headers);
   return headers;
 }
 
@@ -132,8 +111,9 @@ std::map<std::pair<std::string, std::string>, std::vector<const RunScore*>> runs
 
 }  // namespace
 
-FigureConditions figure_conditions(const std::vector<GroupSummary>& groups) {
-  return {nearest(ratios_of(groups), kPaperFigure8Ratio), nearest(tubes_of(groups), kPaperFigure9Tubes)};
+Conditions shown_conditions(const std::vector<GroupSummary>& groups) {
+  const Conditions usual;
+  return {nearest(ratios_of(groups), usual.ratio), nearest(tubes_of(groups), usual.tubes)};
 }
 
 std::vector<std::string> methods_of(const std::vector<GroupSummary>& groups) {
@@ -164,9 +144,9 @@ Table overview_table(const Evaluation& evaluation) {
   return table;
 }
 
-Table figure_8_table(const std::vector<GroupSummary>& groups, const std::string& method) {
-  const double ratio = figure_conditions(groups).figure_8_ratio;
-  Table table{fmt::format("Mean micro-recall by number of tubes, ratio {}, {} (Figure 8)", ratio, method),
+Table recall_by_tubes_table(const std::vector<GroupSummary>& groups, const std::string& method) {
+  const double ratio = shown_conditions(groups).ratio;
+  Table table{fmt::format("Mean micro-recall by number of tubes, ratio {}, {}", ratio, method),
               set_headers("tubes", groups),
               {},
               ""};
@@ -178,9 +158,9 @@ Table figure_8_table(const std::vector<GroupSummary>& groups, const std::string&
   return table;
 }
 
-Table figure_9_table(const std::vector<GroupSummary>& groups, const std::string& method) {
-  const int tubes = figure_conditions(groups).figure_9_tubes;
-  Table table{fmt::format("Mean micro-recall by ratio, {}, {} (Figure 9)", count_of_tubes(tubes), method),
+Table recall_by_ratio_table(const std::vector<GroupSummary>& groups, const std::string& method) {
+  const int tubes = shown_conditions(groups).tubes;
+  Table table{fmt::format("Mean micro-recall by ratio, {}, {}", count_of_tubes(tubes), method),
               set_headers("ratio", groups),
               {},
               ""};
@@ -198,10 +178,9 @@ Table recall_grid(const std::vector<GroupSummary>& groups, const std::string& me
 }
 
 Table time_grid(const std::vector<GroupSummary>& groups, const std::string& method, const std::string& set) {
-  return grid(
-      fmt::format("Mean modelling time in seconds by ratio and number of tubes, {}, set {} (Table 2)", method, set),
-      groups, method, set,
-      [](const GroupSummary& group) { return group.seconds ? number_cell(group.seconds->mean, 3) : Cell(); });
+  return grid(fmt::format("Mean modelling time in seconds by ratio and number of tubes, {}, set {}", method, set),
+              groups, method, set,
+              [](const GroupSummary& group) { return group.seconds ? number_cell(group.seconds->mean, 3) : Cell(); });
 }
 
 Table visibility_table(const Evaluation& evaluation) {
@@ -234,11 +213,19 @@ Table visibility_table(const Evaluation& evaluation) {
   return table;
 }
 
-std::vector<Table> result_tables(const Evaluation& evaluation, const std::vector<GroupSummary>& groups) {
-  std::vector<Table> tables = {transpose(overview_table(evaluation), 2)};
+std::vector<Table> condition_tables(const std::vector<GroupSummary>& groups) {
+  std::vector<Table> tables;
   for (const std::string& method : methods_of(groups)) {
-    tables.push_back(figure_8_table(groups, method));
-    tables.push_back(figure_9_table(groups, method));
+    tables.push_back(recall_by_tubes_table(groups, method));
+    tables.push_back(recall_by_ratio_table(groups, method));
+  }
+  std::erase_if(tables, [](const Table& table) { return table.rows.size() < 2; });
+  return tables;
+}
+
+std::vector<Table> detail_tables(const Evaluation& evaluation, const std::vector<GroupSummary>& groups) {
+  std::vector<Table> tables;
+  for (const std::string& method : methods_of(groups)) {
     for (const std::string& set : sets_of(groups)) tables.push_back(recall_grid(groups, method, set));
     for (const std::string& set : sets_of(groups)) tables.push_back(time_grid(groups, method, set));
   }
@@ -249,60 +236,22 @@ std::vector<Table> result_tables(const Evaluation& evaluation, const std::vector
 
 Table group_table(const std::vector<GroupSummary>& groups) {
   Table table{"Groups",
-              {"method",
-               "set",
-               "tubes",
-               "ratio",
-               "runs",
-               "failed",
-               "micro_recall",
-               "micro_recall_low",
-               "micro_recall_high",
-               "seconds",
-               "seconds_low",
-               "seconds_high",
-               "tube_recall",
-               "tube_precision",
-               "tube_iou",
-               "panoptic_quality",
-               "ap50",
-               "ap",
-               "adjusted_rand_index",
-               "detected",
-               "over_segmented",
-               "under_segmented",
-               "missed",
-               "noise",
-               "tube_count_error",
-               "tube_count_bias",
-               "centerline_model_mean_m",
-               "centerline_model_p95_m",
-               "centerline_truth_mean_m",
-               "centerline_truth_p95_m"},
+              {"method", "set", "tubes", "ratio", "runs", "failed", "micro_recall", "micro_recall_low",
+               "micro_recall_high", "seconds", "seconds_low", "seconds_high"},
               {},
               ""};
+  append_measure_keys(table.headers);
   for (const GroupSummary& group : groups) {
-    const PooledScores& p = group.pooled;
     std::vector<Cell> row = {group.key.method,
                              group.key.set,
                              integer_cell(group.key.tubes),
                              number_cell(group.key.ratio, 2),
                              integer_cell(group.runs),
                              integer_cell(group.failed)};
-    const auto add = [&](double value) { row.push_back(number_cell(value, 6)); };
-    for (const double value : {group.micro_recall.mean, group.micro_recall.low, group.micro_recall.high}) add(value);
-    if (group.seconds)
-      for (const double value : {group.seconds->mean, group.seconds->low, group.seconds->high}) add(value);
-    else row.insert(row.end(), 3, Cell());
-    for (const double value : {p.recall, p.precision, p.iou, p.panoptic_quality, p.average_precision_50,
-                               p.average_precision, p.adjusted_rand_index, p.detected, p.over_segmented,
-                               p.under_segmented, p.missed, p.noise, p.tube_count_error, p.tube_count_bias})
-      add(value);
-    if (p.centerlines > 0)
-      for (const double value :
-           {p.centerline_model_mean, p.centerline_model_p95, p.centerline_truth_mean, p.centerline_truth_p95})
-        add(value);
-    else row.insert(row.end(), 4, Cell());
+    for (const std::optional<Interval>& interval : {std::optional(group.micro_recall), group.seconds})
+      for (double Interval::*member : {&Interval::mean, &Interval::low, &Interval::high})
+        row.push_back(interval ? exact_cell((*interval).*member) : Cell());
+    append_exact_measures(group.pooled, row);
     table.rows.push_back(std::move(row));
   }
   return table;
