@@ -88,6 +88,16 @@ class YamlText : public TextFields {
   std::string indent_;
 };
 
+/// Shown in a Markdown table as it is: no HTML, no end of the cell.
+std::string escape_markdown(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<' || c == '|') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
 class MarkdownTable : public TextFields {
  public:
   void group(const char* key, const char*, const std::function<void(Fields&)>& describe_inner) override {
@@ -107,7 +117,7 @@ class MarkdownTable : public TextFields {
  protected:
   void entry(const std::string& key, const std::string& value, const std::string& unit, const std::string& valid,
              const std::string& doc) override {
-    out_ << fmt::format("| `{}{}` | {} | {} | {} | {} |\n", prefix_, key, value, unit, valid, doc);
+    out_ << fmt::format("| `{}{}` | {} | {} | {} | {} |\n", prefix_, key, value, unit, valid, escape_markdown(doc));
   }
 
  private:

@@ -163,20 +163,21 @@ TEST_F(EvaluateApp, PredictionsThatFitNoScene) {
               HasSubstr("wrong/A3/001.pcd: 4 of its 4 points are at no point of dataset/A3/001/cloud.pcd"));
 }
 
-/// The program in the documentation's ```python block.
-std::string documented_program() {
-  const std::string text = read_file(TUBEBIN_SOURCE_DIR "/docs/foreign_algorithms.md");
-  const std::size_t start = text.find("```python\n") + 10;
-  return text.substr(start, text.find("```", start) - start);
+/// The commands of the example: its program over a data set.
+std::string kmeans(const std::string& python, const std::string& dataset, const std::string& labels) {
+  return python + " -B " TUBEBIN_SOURCE_DIR "/examples/python/kmeans.py " + dataset + " " + labels + " 2>&1";
 }
 
-TEST_F(EvaluateApp, TheDocumentedForeignAlgorithmIsScored) {
+TEST(ForeignAlgorithms, ThePageShowsTheExample) {
+  EXPECT_THAT(read_file(TUBEBIN_SOURCE_DIR "/docs/foreign_algorithms.md"),
+              HasSubstr("```python\n" + read_file(TUBEBIN_SOURCE_DIR "/examples/python/kmeans.py") + "```"));
+}
+
+TEST_F(EvaluateApp, TheExampleOfAForeignAlgorithmIsScored) {
   const auto python = testing::find_python("numpy");
   if (!python) GTEST_SKIP() << "no python3 with numpy here";
   write_scanned_dataset(folder_.path() / "dataset", {"A3/001", "A3/002"});
-  testing::write_text(path("kmeans.py"), documented_program());
-  const CommandResult program = testing::run_command(*python + " " + path("kmeans.py") + " " + path("dataset") + " " +
-                                                     path("kmeans_labels") + " 2>&1");
+  const CommandResult program = testing::run_command(kmeans(*python, path("dataset"), path("kmeans_labels")));
   ASSERT_EQ(program.exit_code, 0) << program.output;
   const CommandResult result = evaluate("dataset --predictions kmeans_labels --format json --quiet");
   ASSERT_EQ(result.exit_code, 0) << result.output;
@@ -194,8 +195,7 @@ TEST_F(EvaluateApp, TheDocumentedForeignAlgorithmIsScored) {
     for (const std::string file : {"cloud.pcd", "scene.json"})
       tar += format_tar_member(scene + "." + file, read_file(path("dataset/" + scene + "/" + file)));
   testing::write_text(path("packed/packs/one.tar"), tar + format_tar_end());
-  const CommandResult packed = testing::run_command(*python + " " + path("kmeans.py") + " " + path("packed") + " " +
-                                                    path("packed_labels") + " 2>&1");
+  const CommandResult packed = testing::run_command(kmeans(*python, path("packed"), path("packed_labels")));
   ASSERT_EQ(packed.exit_code, 0) << packed.output;
   for (const std::string scene : {"A3/001", "A3/002"})
     EXPECT_EQ(read_file(path("packed_labels/" + scene + ".pcd")), read_file(path("kmeans_labels/" + scene + ".pcd")));
