@@ -1,0 +1,378 @@
+#!/usr/bin/env python3
+"""Draws the pictures of README and docs from what the programs make (needs numpy, Pillow and, for the report, Chromium).
+
+usage: scripts/make_pictures.py BIN_DIR [--folder FOLDER] [--only NAME...]
+FOLDER keeps the data sets and models between runs; NAME is a function below without its `draw_`.
+"""
+import argparse
+import itertools
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+IMAGES = ROOT / "docs/images"
+sys.path.insert(0, str(ROOT / "examples/python"))
+sys.dont_write_bytecode = True
+from clouds import read_pcd  # noqa: E402
+
+WHITE, GREY, INK = (255, 255, 255), (150, 150, 150), (40, 40, 40)
+SCENE = "A10/001"  # of the tutorial's data set
+
+
+class Work:
+    """Runs the programs in a folder, each command once."""
+
+    def __init__(self, bin_dir, folder):
+        self.bin_dir, self.folder = pathlib.Path(bin_dir).resolve(), pathlib.Path(folder)
+
+    def run(self, output, program, *arguments):
+        if not (self.folder / output).exists():
+            subprocess.run([self.bin_dir / program, *arguments], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
+        return self.folder / output
+
+    def dataset(self):
+        return self.run("dataset", "generate_dataset", ROOT / "config/set_a.yaml", "--output", "dataset", "--tubes",
+                        "1,5,10", "--cases", "2", "--preview", "--quiet")
+
+    def model(self):
+        """Folder of the tutorial's model of SCENE."""
+        self.dataset()
+        return self.run("one", "model_tubes", f"dataset/{SCENE}/cloud.pcd", "--output", "one")
+
+    def results(self):
+        self.dataset()
+        return self.run("results", "model_tubes", "dataset", "--output", "results", "--ratios", "0.3,1.0", "--method",
+                        "both", "--quiet")
+
+
+# ---- drawing ----
+
+def font(size):
+    for name in ("DejaVuSans.ttf", "LiberationSans-Regular.ttf"):
+        try:
+            return ImageFont.truetype(name, size)
+        except OSError:
+            pass
+    return ImageFont.load_default()
+
+
+def save(picture, name, colors=128):
+    """As a PNG of few colours, which keeps it small."""
+    path = IMAGES / name
+    picture.convert("RGB").quantize(colors, dither=Image.Dither.NONE).save(path, optimize=True)
+    print(f"{path.relative_to(ROOT)}: {path.stat().st_size // 1000} kB")
+
+
+def beside(pictures, titles=None, columns=None, gap=10):
+    """Pictures of one size in rows, each under its title."""
+    columns = columns or len(pictures)
+    rows = -(-len(pictures) // columns)
+    width, height = pictures[0].size
+    head = 24 if titles else 0
+    sheet = Image.new("RGB", (columns * (width + gap) - gap, rows * (height + head + gap) - gap), WHITE)
+    draw = ImageDraw.Draw(sheet)
+    for i, picture in enumerate(pictures):
+        x, y = i % columns * (width + gap), i // columns * (height + head + gap)
+        sheet.paste(picture, (x, y + head))
+        if titles:
+            draw.text((x + 2, y + 3), titles[i], INK, font(15))
+    return sheet
+
+
+def surface(start, end, radius, step=0.0004):
+    """Points (metres) on a cylinder's side and on the joint sphere at its end, with their normals."""
+    axis = end - start
+    length = np.linalg.norm(axis)
+    axis = axis / length
+    side = np.cross(axis, [0.0, 0.0, 1.0] if abs(axis[2]) < 0.9 else [1.0, 0.0, 0.0])
+    side /= np.linalg.norm(side)
+    other = np.cross(axis, side)
+    angle = np.arange(0.0, 2 * np.pi, step / radius)
+    ring = np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * other
+    along = np.arange(0.0, length, step)
+    points = (start + along[:, None] * axis)[:, None] + radius * ring[None]
+    return points.reshape(-1, 3), np.broadcast_to(ring, points.shape).reshape(-1, 3)
+
+
+def ball(center, radius, step=0.0004):
+    count = int(4 * np.pi * (radius / step) ** 2)
+    i = np.arange(count) + 0.5  # Fibonacci's spiral
+    z, angle = 1 - 2 * i / count, np.pi * (1 + 5**0.5) * i
+    normals = np.stack([np.cos(angle) * np.sqrt(1 - z * z), np.sin(angle) * np.sqrt(1 - z * z), z], axis=1)
+    return center + radius * normals, normals
+
+
+class TopView:
+    """A picture of a part of the bin, seen straight from above; what is higher covers what is lower."""
+
+    def __init__(self, x, y, width):
+        self.x, self.y = x, y  # ranges, metres
+        self.scale = width / (x[1] - x[0])
+        self.size = (width, round((y[1] - y[0]) * self.scale))
+        self.image = np.full((self.size[1], self.size[0], 3), 255, np.uint8)
+        self.height = np.full((self.size[1], self.size[0]), -np.inf)
+
+    def pixels(self, points):
+        return np.stack([(points[:, 0] - self.x[0]) * self.scale, (self.y[1] - points[:, 1]) * self.scale], axis=1)
+
+    def splat(self, points, colors, size=1):
+        order = np.argsort(points[:, 2], kind="stable")
+        points, colors = points[order], np.broadcast_to(colors, (len(points), 3))[order]
+        column, row = np.floor(self.pixels(points)).astype(int).T
+        for dx in range(size):
+            for dy in range(size):
+                u, v = column + dx - size // 2, row + dy - size // 2
+                inside = (u >= 0) & (v >= 0) & (u < self.size[0]) & (v < self.size[1])
+                u, v, z, c = u[inside], v[inside], points[inside, 2], colors[inside]
+                seen = z >= self.height[v, u]
+                self.image[v[seen], u[seen]] = c[seen]
+                self.height[v[seen], u[seen]] = z[seen]
+
+    def solid(self, points, normals, color):
+        light = 0.45 + 0.55 * np.clip(normals @ np.array([-0.35, 0.35, 0.87]), 0, 1)
+        self.splat(points, np.clip(np.outer(light, color), 0, 255).astype(np.uint8), 2)
+
+    def cylinder(self, start, end, radius, color, joint=True):
+        start, end = np.array(start), np.array(end)
+        self.solid(*surface(start, end, radius), color)
+        if joint:
+            self.solid(*ball(start, radius), color)
+
+    def picture(self):
+        return Image.fromarray(self.image)
+
+
+# ---- what the programs made ----
+
+def coordinates(cloud):
+    return np.stack([cloud["x"], cloud["y"], cloud["z"]], axis=1).astype(float)
+
+
+def truth_of_labels(work, folder):
+    """By evaluate's matching: the true label of each label that was found."""
+    table = subprocess.run([work.bin_dir / "evaluate", "--filtered", folder / "filtered.pcd", "--labeled",
+                            folder / "labeled.pcd", "--format", "csv"], check=True, capture_output=True, text=True)
+    rows = [line.split(",") for line in table.stdout.splitlines()]
+    return {int(row[2]): int(row[0]) for row in rows if len(row) > 3 and row[0].isdigit() and row[2].isdigit()}
+
+
+def read_json(path):
+    return json.loads(path.read_text())
+
+
+def scene_colors(scene):
+    return {tube["label"]: tuple(tube["color"]) for tube in scene["tubes"]}
+
+
+def pale(color, share=0.6):
+    return tuple(round(share * 255 + (1 - share) * c) for c in color)
+
+
+def organized_points(cloud, columns):
+    return coordinates(cloud).reshape(-1, columns, 3)
+
+
+def normals_of(grid):
+    """Normals of an organized cloud (rows x columns x 3) by planes through 5 x 5 pixels, towards the scanner above."""
+    padded = np.pad(grid, ((2, 2), (2, 2), (0, 0)), constant_values=np.nan)
+    window = np.lib.stride_tricks.sliding_window_view(padded, (5, 5), axis=(0, 1)).reshape(*grid.shape, 25)
+    near = np.linalg.norm(window - grid[..., None], axis=2) < 0.006
+    window = np.where(near[:, :, None], window, 0.0)
+    count = np.maximum(near.sum(axis=2), 1)[..., None]
+    offset = np.where(near[:, :, None], window - (window.sum(axis=3) / count)[..., None], 0.0)
+    covariance = np.einsum("rcip,rcjp->rcij", offset, offset)
+    normal = np.linalg.eigh(covariance)[1][..., 0]
+    return normal * np.where(normal[..., 2:] < 0, -1, 1), near.sum(axis=2) >= 12
+
+
+# ---- the pictures ----
+
+def draw_tutorial_scene(work):
+    folder = work.dataset() / SCENE
+    for name in ("preview", "ground_truth"):
+        picture = Image.open(folder / f"{name}.png").convert("RGB")
+        picture.thumbnail((720, 480), Image.Resampling.LANCZOS)
+        save(picture, f"tutorial_{name}.png")
+
+
+def found(work, view):
+    """Draws the tubes that model_tubes found, in the colours of the true tubes that they match."""
+    scene, match = read_json(work.dataset() / SCENE / "scene.json"), truth_of_labels(work, work.model())
+    colors = scene_colors(scene)
+    for tube in read_json(work.model() / "model.json")["tubes"]:
+        color = colors.get(match.get(tube["label"]), GREY)
+        for k, cylinder in enumerate(tube["cylinders"]):
+            view.cylinder(cylinder["start"], cylinder["end"], cylinder["radius"], color, joint=k > 0)
+    return view.picture()
+
+
+def extent(points, margin=0.01):
+    low, high = np.nanmin(points, axis=0) - margin, np.nanmax(points, axis=0) + margin
+    return (low[0], high[0]), (low[1], high[1])
+
+
+def labelled(work, view):
+    """Draws the points of labeled.pcd in the colours of the true tubes that their labels match."""
+    scene, match = read_json(work.dataset() / SCENE / "scene.json"), truth_of_labels(work, work.model())
+    colors = scene_colors(scene)
+    cloud = read_pcd((work.model() / "labeled.pcd").read_bytes())
+    table = np.array([colors.get(match.get(k), GREY) for k in range(cloud["label"].max() + 1)], np.uint8)
+    view.splat(coordinates(cloud), table[cloud["label"]], 2)
+    return view.picture()
+
+
+def draw_tutorial_found(work):
+    cloud = read_pcd((work.model() / "labeled.pcd").read_bytes())
+    x, y = extent(coordinates(cloud))
+    save(beside([labelled(work, TopView(x, y, 520)), found(work, TopView(x, y, 520))],
+                ["labeled.pcd", "model.json"]), "tutorial_found.png")
+
+
+def draw_overview(work):
+    folder = work.dataset() / SCENE
+    cloud = read_pcd((work.model() / "labeled.pcd").read_bytes())
+    x, y = extent(coordinates(cloud))
+    model = found(work, TopView(x, y, 470))
+    truth = np.array(Image.open(folder / "ground_truth.png").convert("RGB"))
+    truth[(truth == 0).all(axis=2)] = WHITE
+    truth[(truth == 128).all(axis=2)] = (225, 225, 225)
+    preview = Image.open(folder / "preview.png").convert("RGB")
+    save(beside([fit(preview, model.size), fit(Image.fromarray(truth), model.size), model]), "overview.png")
+
+
+def fit(picture, size):
+    """The picture, as large as fits, in the middle of a white one of the size."""
+    picture = picture.copy()
+    box = Image.eval(picture.convert("L"), lambda value: 255 if value < 200 else 0).getbbox()
+    picture = picture.crop(box) if box else picture
+    picture.thumbnail(size, Image.Resampling.LANCZOS)
+    sheet = Image.new("RGB", size, WHITE)
+    sheet.paste(picture, ((size[0] - picture.width) // 2, (size[1] - picture.height) // 2))
+    return sheet
+
+
+def draw_tutorial_report(work):
+    browser = shutil.which("chromium") or shutil.which("google-chrome")
+    if not browser:
+        print("no Chromium here: tutorial_report.png stays")
+        return
+    work.results()
+    report = work.run("report.html", "evaluate", "results", "--html", "report.html", "--quiet")
+    shot = work.folder / "report.png"
+    subprocess.run([browser, "--headless", "--no-sandbox", "--hide-scrollbars", "--window-size=1100,900",
+                    f"--screenshot={shot}", report.resolve().as_uri()], check=True, stderr=subprocess.DEVNULL)
+    save(Image.open(shot).resize((825, 675), Image.Resampling.LANCZOS), "tutorial_report.png", 64)
+
+
+def draw_modeling(work):
+    """Points, votes, pieces, bridges and joined tubes of one part of the scene."""
+    folder = work.dataset() / SCENE
+    scene, model = read_json(folder / "scene.json"), read_json(work.model() / "model.json")
+    bridges = [c for tube in model["tubes"] for c in tube["cylinders"] if c["bridged"]]
+    middle = np.median([np.add(c["start"], c["end"]) / 2 for c in bridges], axis=0)
+    x, y = (middle[0] - 0.12, middle[0] + 0.12), (middle[1] - 0.09, middle[1] + 0.09)
+    view = lambda: TopView(x, y, 480)
+
+    grid = organized_points(read_pcd((folder / "cloud.pcd").read_bytes()), scene["scanner"]["window"]["width"])
+    labels = read_pcd((folder / "cloud.pcd").read_bytes())["label"].reshape(grid.shape[:2])
+    normals, known = normals_of(grid)
+    tubes = known & (labels > 0) & np.isfinite(grid[..., 2])
+    light = (0.45 + 0.55 * np.clip(normals[tubes] @ np.array([-0.35, 0.35, 0.87]), 0, 1))[:, None]
+    points = view()
+    points.splat(grid[tubes], (light * 210).astype(np.uint8), 3)
+    votes = view()
+    votes.splat(grid[tubes], pale(GREY, 0.65), 3)
+    votes.height[:] = -np.inf
+    votes.splat(grid[tubes] - model["radius"] * normals[tubes], (200, 30, 30), 2)
+
+    match, colors = truth_of_labels(work, work.model()), scene_colors(scene)
+    pieces, joined = view(), view()
+    palette = itertools.cycle([(230, 120, 30), (60, 130, 200), (90, 170, 70), (190, 80, 160), (220, 190, 40), (80, 190, 190)])
+    for tube in model["tubes"]:
+        color = colors.get(match.get(tube["label"]), GREY)
+        piece_color = next(palette)
+        for k, c in enumerate(tube["cylinders"]):
+            before = tube["cylinders"][k - 1]["bridged"] if k else True
+            if c["bridged"]:
+                piece_color = next(palette)
+            else:
+                pieces.cylinder(c["start"], c["end"], c["radius"], piece_color, joint=not before)
+            joined.cylinder(c["start"], c["end"], c["radius"], color, joint=k > 0)
+    bridged = Image.fromarray(pieces.image.copy())
+    draw = ImageDraw.Draw(bridged)
+    for c in bridges:
+        ends = pieces.pixels(np.array([c["start"], c["end"]]))
+        draw.line([tuple(p) for p in ends], (20, 20, 20), 3)
+        for u, v in ends:
+            draw.ellipse([u - 4, v - 4, u + 4, v + 4], (20, 20, 20))
+    save(beside([points.picture(), votes.picture(), bridged, joined.picture()],
+                ["points", "votes: a radius behind each point", "pieces, and the bridges that join them", "tubes"],
+                columns=2), "modeling.png")
+
+
+def effect_configs(work):
+    """Name and scanner.effects of each picture, with the values of scanner_zivid_like.yaml."""
+    work.run("zivid", "generate_dataset", ROOT / "config/scanner_zivid_like.yaml", "--output", "zivid", "--tubes", "10",
+             "--cases", "1", "--quiet")
+    all_effects = read_json(work.folder / "zivid/A10/001/scene.json")["scanner"]["effects"]
+    base = {"reference_distance": all_effects["reference_distance"]}
+    alone = [("lateral noise", "lateral_noise"), ("projector's shadow", "projector"), ("drop-outs", "dropouts"),
+             ("mixed pixels", "mixed_pixels"), ("range noise", "range_noise"), ("outliers", "outliers")]
+    configs = [(name, base | {key: all_effects[key]}) for name, key in alone]
+    return [("exact", base)] + configs + [("all of scanner_zivid_like.yaml", all_effects)]
+
+
+def draw_scanner_effects(work):
+    """The same pixels under each effect: blue too near, red too far by up to 1 mm, black missing."""
+    pictures, titles = [], []
+    for number, (name, effects) in enumerate(effect_configs(work)):
+        config = work.folder / f"effect_{number}.yaml"
+        config.write_text(json.dumps({"include": str(ROOT / "config/set_a.yaml"), "scanner": {"effects": effects},
+                                      "output": {"clean_cloud": True}}))
+        folder = work.run(f"effect_{number}", "generate_dataset", config, "--output", f"effect_{number}", "--tubes",
+                          "10", "--cases", "1", "--quiet") / "A10/001"
+        pictures.append(effect_picture(folder))
+        titles.append(name)
+    save(beside(pictures, titles, columns=4), "scanner_effects.png")
+
+
+def effect_picture(folder):
+    scene = read_json(folder / "scene.json")
+    columns = scene["scanner"]["window"]["width"]
+    clean_file = folder / "cloud_clean.pcd"
+    measured = organized_points(read_pcd((folder / "cloud.pcd").read_bytes()), columns)
+    clean = organized_points(read_pcd((clean_file if clean_file.exists() else folder / "cloud.pcd").read_bytes()), columns)
+    rows, cols = slice(160, 280), slice(200, 360)
+    normals, _ = normals_of(clean[rows, cols])
+    light = 0.35 + 0.65 * np.clip(normals @ np.array([-0.35, 0.35, 0.87]), 0, 1)
+    off = np.clip((clean - measured)[rows, cols, 2] / 0.001, -1, 1)[..., None]  # metres; positive: too far
+    color = np.where(off > 0, [220, 40, 30], [30, 70, 220]) * abs(off) + 235 * (1 - abs(off))
+    image = np.where(np.isfinite(off), light[..., None] * color, 0)
+    return Image.fromarray(np.nan_to_num(image).astype(np.uint8)).resize((320, 240), Image.Resampling.NEAREST)
+
+
+def main():
+    pictures = {name.removeprefix("draw_"): function for name, function in globals().items() if name.startswith("draw_")}
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bin_dir")
+    parser.add_argument("--folder")
+    parser.add_argument("--only", nargs="+", choices=pictures)
+    arguments = parser.parse_args()
+    IMAGES.mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(arguments.folder or temporary)
+        folder.mkdir(parents=True, exist_ok=True)
+        work = Work(arguments.bin_dir, folder)
+        for name in arguments.only or pictures:
+            pictures[name](work)
+
+
+if __name__ == "__main__":
+    main()
