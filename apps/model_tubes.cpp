@@ -21,8 +21,10 @@ constexpr const char* kExamples = R"(
 Examples:
   model_tubes dataset_a/A10/007/cloud.pcd --output model
       the tubes of one cloud: model/filtered.pcd, model/labeled.pcd, model/model.json
-  model_tubes scan.ply --scale 0.001 --radius 0.0125 --output model
-      a scanner's file in millimetres; floor and walls of the bin are found in the cloud
+  model_tubes scan.ply --scale 0.001 --output model
+      a scanner's file in millimetres; whatever stands around the tubes is found in the cloud (docs/your_own_scanner.md)
+  model_tubes scan.ply --radius 0.008,0.016 --output model
+      tubes of two known radii
   model_tubes dataset_a --output results --ratios 0.1:1.0:0.1 --jobs 4
       every cloud of a data set at ten ratios, for evaluate (see docs/results_format.md)
   model_tubes dataset_a --output results --method region_growing --ratios 0.3
@@ -33,7 +35,7 @@ Examples:
 
 Run the same command again after an interruption: complete results are kept.
 Exit codes: 0 done; 1 input or output failed; 2 wrong usage or configuration; 3 finished, but some clouds could not be
-done (each is named); 130 and 143 interrupted by Ctrl-C or SIGTERM.)";
+done (each is named), or the result may not be trusted (a warning says why); 130 and 143 interrupted by Ctrl-C or SIGTERM.)";
 
 struct Arguments {
   std::string input;
@@ -43,7 +45,7 @@ struct Arguments {
   std::string method;
   std::optional<double> ratio;
   std::string ratios;
-  std::optional<double> radius;
+  std::vector<double> radii;
   std::optional<double> tube_length;
   std::optional<std::uint64_t> seed;
   double scale = 1.0;
@@ -51,6 +53,8 @@ struct Arguments {
   int cases = 0;
   std::string shard;
   std::optional<int> shard_count;
+  std::vector<double> bin_pose, viewpoint, up, crop;
+  bool full = false;
   bool keep_clouds = false;
   bool quiet = false;
 };
@@ -65,8 +69,32 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--ratio", arguments.ratio, "Part of the points to keep, above 0 and up to 1");
   app.add_option("--ratios", arguments.ratios, "Ratios for a data set: 0.1,0.3,1 or first:last:step")
       ->type_name("0.1:1.0:0.1");
-  app.add_option("--radius", arguments.radius, "Radius of the tubes in metres; without it, estimated");
+  app.add_option("--radius", arguments.radii,
+                 "Radius of the tubes in metres, or several: 0.008,0.016; without it, estimated")
+      ->delimiter(',')
+      ->type_name("R[,R...]");
   app.add_option("--tube-length", arguments.tube_length, "Length of every tube in metres; without it, estimated");
+  app.add_option(
+         "--bin-pose", arguments.bin_pose,
+         "Where the configuration's bin stands, about: the middle of its inner floor in metres, and roll, pitch, "
+         "yaw in degrees; the cloud refines it")
+      ->delimiter(',')
+      ->expected(6)
+      ->type_name("X,Y,Z,ROLL,PITCH,YAW");
+  app.add_option("--viewpoint", arguments.viewpoint, "Where the scanner stood, metres; without it, as the file says")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X,Y,Z");
+  app.add_option("--up", arguments.up, "Against gravity, in the cloud's frame; without it, found")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X,Y,Z");
+  app.add_option("--crop", arguments.crop, "Two corners of the box that tubes are looked for in, metres")
+      ->delimiter(',')
+      ->expected(6)
+      ->type_name("X,Y,Z,X,Y,Z");
+  app.add_flag("--full", arguments.full,
+               "Also write full.pcd, all points in their places, labelled; always for an organized cloud");
   app.add_option("--scale", arguments.scale, "Factor from the file's unit to metres: 0.001 for millimetres")
       ->check(CLI::PositiveNumber);
   app.add_option("--seed", arguments.seed, "Seed of downsampling and RANSAC");
@@ -108,7 +136,23 @@ results::ModelConfig resolve_config(const Arguments& arguments) {
   const auto set = [&](const char* key, const auto& value) {
     if (value) text += fmt::format("{}: {}\n", key, *value);
   };
-  set("radius", arguments.radius);
+  if (!arguments.radii.empty()) {
+    text += fmt::format("radius: {}\nother_radii: [", arguments.radii.front());
+    for (std::size_t k = 1; k < arguments.radii.size(); ++k)
+      text += fmt::format("{}{{radius: {}}}", k > 1 ? ", " : "", arguments.radii[k]);
+    text += "]\n";
+  }
+  const auto set_vector = [&](const char* key, const std::vector<double>& numbers, std::size_t first) {
+    if (!numbers.empty())
+      text += fmt::format("{}: [{}, {}, {}]\n", key, numbers[first], numbers[first + 1], numbers[first + 2]);
+  };
+  set_vector("viewpoint", arguments.viewpoint, 0);
+  set_vector("up", arguments.up, 0);
+  set_vector("crop_min", arguments.crop, 0);
+  set_vector("crop_max", arguments.crop, 3);
+  set_vector("bin_position", arguments.bin_pose, 0);
+  set_vector("bin_rotation_deg", arguments.bin_pose, 3);
+  if (!arguments.bin_pose.empty()) text += "bin_source: config\n";
   set("tube_length", arguments.tube_length);
   set("seed", arguments.seed);
   if (!arguments.method.empty() && arguments.method != "both") text += "method: " + arguments.method + "\n";
@@ -124,6 +168,7 @@ int model_one(const Arguments& arguments) {
                        arguments.input);
   results::ModelConfig config = resolve_config(arguments);
   const results::CloudToModel input = results::read_cloud_to_model(arguments.input, arguments.scale);
+  config.modeling.label_all = arguments.full || input.cloud.organized();
   const modeling::ModelingResult result = results::model_cloud(input, config);
   std::error_code error;
   fs::create_directories(arguments.output, error);
@@ -132,6 +177,9 @@ int model_one(const Arguments& arguments) {
                      cloud::CloudFormat::pcd_binary);
   cloud::write_cloud(arguments.output + "/labeled.pcd", results::labeled_cloud(input.cloud, result),
                      cloud::CloudFormat::pcd_binary);
+  if (config.modeling.label_all)
+    cloud::write_cloud(arguments.output + "/full.pcd", results::fully_labeled_cloud(input.cloud, result),
+                       cloud::CloudFormat::pcd_binary);
   write_file_atomically(arguments.output + "/model.json", modeling::format_model_json(
                                                               result, results::model_colors(result),
                                                               [&](Fields& fields) { describe(fields, config); }, true));
@@ -143,7 +191,9 @@ int model_one(const Arguments& arguments) {
     fmt::print("tube {}: {} cylinders, {:.3f} m, {} points\n", k + 1, result.tubes[k].cylinder_count(),
                result.tubes[k].length(),
                std::count(result.labels.begin(), result.labels.end(), static_cast<cloud::Label>(k + 1)));
-  return static_cast<int>(ExitCode::done);
+  fmt::print("{}\n", modeling::describe_found(result));
+  for (const std::string& doubt : result.found.doubts) fmt::print(stderr, "Warning: {}: {}\n", arguments.input, doubt);
+  return static_cast<int>(result.found.doubts.empty() ? ExitCode::done : ExitCode::incomplete);
 }
 
 /// A folder, or a pack of scenes.
@@ -195,7 +245,7 @@ int model_many(results::BatchOptions options, const results::ModelConfig& config
 /// Everything but what to do it with is as the first call said.
 int resume(const Arguments& arguments) {
   if (!arguments.config.empty() || !arguments.method.empty() || arguments.ratio || !arguments.ratios.empty() ||
-      arguments.radius || arguments.tube_length || arguments.seed || arguments.cases > 0)
+      !arguments.radii.empty() || arguments.tube_length || arguments.seed || arguments.cases > 0)
     throw_config_error("--resume takes the options of the modeller from {}/index.json", arguments.resume.front());
   const results::ResumedBatch batch = results::resume_batch(arguments.resume);
   return model_many(batch.options, batch.config, arguments);

@@ -12,8 +12,17 @@ namespace {
 struct SolidCylinder {
   cloud::Point start, axis;  ///< axis: unit
   float length, radius;
-  bool flat_start, flat_end;
+  bool flat_start, flat_end, bridged;
   std::uint32_t surface;
+
+  /// How far from the surface a point may lie, metres.
+  float reach_of(const cloud::Point& p, const Reach& reach) const {
+    if (bridged) return static_cast<float>(reach.bridged) * radius;
+    const float along = (p - start).dot(axis), shallow = radius / 2.0f, wide = 1.5f * radius;
+    const bool is_on_axis = (p - start - along * axis).squaredNorm() < wide * wide;
+    const bool is_at_end = is_on_axis && ((flat_start && along < shallow) || (flat_end && along > length - shallow));
+    return static_cast<float>(is_at_end ? std::max(reach.end, reach.seen) : reach.seen) * radius;
+  }
 
   /// Signed distance to the surface of this cylinder with its spheres: negative inside. The union's surface is where
   /// the least of its parts' signed distances is zero.
@@ -44,6 +53,7 @@ std::vector<SolidCylinder> solid_cylinders(const TubeSurface& surface, std::uint
                          .radius = static_cast<float>(surface.radius),
                          .flat_start = k == 0,
                          .flat_end = k + 2 == surface.nodes.size(),
+                         .bridged = surface.bridged && (*surface.bridged)[k],
                          .surface = index});
   }
   return cylinders;
@@ -153,30 +163,30 @@ std::vector<bool> within_surfaces(std::span<const cloud::Point> points, const st
 }
 
 std::vector<NearestSurface> nearest_surfaces(std::span<const cloud::Point> points,
-                                             const std::vector<TubeSurface>& surfaces, double reach) {
+                                             const std::vector<TubeSurface>& surfaces, const Reach& reach) {
   const std::vector<SolidCylinder> cylinders = all_cylinders(surfaces);
   std::vector<NearestSurface> nearest(points.size());
   if (cylinders.empty()) return nearest;
 
-  const CylinderGrid grid(cylinders, static_cast<float>(reach));
+  const float widest = std::ranges::max_element(cylinders, {}, &SolidCylinder::radius)->radius;
+  const CylinderGrid grid(cylinders, static_cast<float>(std::max({reach.seen, reach.end, reach.bridged})) * widest);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    nearest[i].distance = static_cast<float>(reach);
+    nearest[i].distance = std::numeric_limits<float>::infinity();
     // A cube's cylinders are sorted, so those of one surface follow each other.
     std::uint32_t surface = NearestSurface::kNone;
-    float least = 0.0f;
+    float least = 0.0f, limit = 0.0f;
     const auto settle = [&] {
-      if (surface != NearestSurface::kNone && std::abs(least) < std::abs(nearest[i].distance))
+      if (surface != NearestSurface::kNone && std::abs(least) < std::min(limit, std::abs(nearest[i].distance)))
         nearest[i] = {.surface = surface, .distance = least};
     };
     for (const std::uint32_t c : grid.near(points[i])) {
       const float distance = cylinders[c].signed_distance(points[i]);
-      if (cylinders[c].surface == surface) {
-        least = std::min(least, distance);
-        continue;
-      }
-      settle();
+      const bool is_next = cylinders[c].surface != surface;
+      if (is_next) settle();
+      if (!is_next && distance >= least) continue;
       surface = cylinders[c].surface;
       least = distance;
+      limit = cylinders[c].reach_of(points[i], reach);
     }
     settle();
   }

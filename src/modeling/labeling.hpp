@@ -14,6 +14,7 @@ namespace tubebin::modeling {
 struct TubeSurface {
   std::span<const Vec3> nodes;
   double radius = 0.0;
+  const std::vector<bool>* bridged = nullptr;  ///< of each cylinder: its course is a guess; null: none's is
 };
 
 /// Distances of points to the surface, metres; negative inside.
@@ -25,9 +26,16 @@ struct NearestSurface {
   float distance = 0.0f;          ///< to it, metres; negative inside
 };
 
-/// The nearest surface of every point, none where all are farther than `reach` metres.
+/// How far from a surface its points may lie, in its radii.
+struct Reach {
+  double seen = 0.0;
+  double end = 0.0;      ///< before a flat end, whose place is less well known
+  double bridged = 0.0;  ///< from a cylinder whose course is a guess
+};
+
+/// The nearest surface of every point, none where all are farther than they reach.
 std::vector<NearestSurface> nearest_surfaces(std::span<const cloud::Point> points,
-                                             const std::vector<TubeSurface>& surfaces, double reach);
+                                             const std::vector<TubeSurface>& surfaces, const Reach& reach);
 
 /// Whether each point is inside one of the surfaces, or outside by less than `tolerance` metres.
 std::vector<bool> within_surfaces(std::span<const cloud::Point> points, const std::vector<TubeSurface>& surfaces,

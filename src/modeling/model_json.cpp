@@ -15,26 +15,52 @@ using Json = OrderedJson;
 /// To a tenth of a micrometre: below what a scanner tells, and short in the file.
 double rounded(double metres) { return std::round(metres * 1e7) / 1e7; }
 
+double rounded_nats(double nats) { return std::round(nats * 10.0) / 10.0; }
+
 Json place(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
+
+Json scene_json(const ModelingResult& result) {
+  const SceneFound& found = result.found;
+  Json radii = Json::array();
+  for (std::size_t k = 0; k < result.radii.size(); ++k)
+    radii.push_back({{"radius", rounded(result.radii[k])}, {"error", rounded(result.radius_errors[k])}});
+  return {{"up", place(found.up)},
+          {"up_is_known", found.up_is_known},
+          {"viewpoint", place(found.viewpoint)},
+          {"viewpoint_is_told", found.viewpoint_is_told},
+          {"flat_regions", found.flat_regions},
+          {"radii", radii},
+          {"unexplained", std::round(found.unexplained * 1e4) / 1e4},
+          {"doubts", found.doubts}};
+}
 
 Json tube_json(const TubeModel& tube, std::size_t label, cloud::Color color, std::size_t points) {
   Json cylinders = Json::array(), joints = Json::array();
   for (std::size_t p = 0; p < tube.paths.size(); ++p) {
-    const auto& [nodes, bridged] = tube.paths[p];
+    const TubePath& path = tube.paths[p];
+    const auto& nodes = path.nodes;
+    std::size_t bridge = 0;
     for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
-      cylinders.push_back({{"path", p},
-                           {"start", place(nodes[k])},
-                           {"end", place(nodes[k + 1])},
-                           {"radius", rounded(tube.radius)},
-                           {"length", rounded((nodes[k + 1] - nodes[k]).norm())},
-                           {"bridged", bool(bridged[k])}});
+      Json cylinder = {{"path", p},
+                       {"start", place(nodes[k])},
+                       {"end", place(nodes[k + 1])},
+                       {"radius", rounded(tube.radius)},
+                       {"length", rounded((nodes[k + 1] - nodes[k]).norm())},
+                       {"bridged", bool(path.bridged[k])}};
+      if (path.bridged[k] && bridge < path.bridge_odds.size())
+        cylinder["log_odds"] = rounded_nats(path.bridge_odds[bridge++]);
+      cylinders.push_back(std::move(cylinder));
       if (k > 0) joints.push_back({{"position", place(nodes[k])}, {"radius", rounded(tube.radius)}});
     }
   }
+  double evidence = 0.0;
+  for (const TubePath& path : tube.paths) evidence += path.evidence;
   return {{"label", label},
           {"color", fmt::format("#{:06x}", color)},
           {"length", rounded(tube.length())},
           {"points", points},
+          {"radius", rounded(tube.radius)},
+          {"log_odds", rounded_nats(evidence)},
           {"cylinders", cylinders},
           {"joints", joints}};
 }
@@ -62,6 +88,7 @@ std::string format_model_json(const ModelingResult& result, const std::vector<cl
                {"tube_length", rounded(result.tube_length)},
                {"noise", rounded(result.noise)},
                {"spacing", rounded(result.spacing)},
+               {"scene", scene_json(result)},
                {"tubes", tubes},
                {"options", fields_to_json(describe_options)}};
   if (with_seconds) json["seconds"] = seconds_json(result.seconds);

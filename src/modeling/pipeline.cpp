@@ -3,16 +3,21 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include "modeling/fitting/centerline_fitting.hpp"
 #include "modeling/fitting/centerline_pieces.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
 #include "modeling/fitting/piece_cleaning.hpp"
+#include "modeling/fitting/tube_classes.hpp"
+#include "modeling/input/background.hpp"
+#include "modeling/input/bin_pose.hpp"
 #include "modeling/input/normals.hpp"
-#include "modeling/input/radius_estimation.hpp"
 #include "modeling/joining/branch_joining.hpp"
 #include "modeling/joining/tube_joining.hpp"
-#include "modeling/labeling.hpp"
+#include "modeling/point_labels.hpp"
+#include "modeling/scene_found.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin::modeling {
@@ -31,34 +36,6 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// From the normals at first, then from what the points about the longest pieces say.
-double estimate_radius_of(const FilteredCloud& cloud, const ViewProjection& projection) {
-  constexpr std::size_t kPieces = 5;
-  const double first = estimate_radius(cloud.points, cloud.normals, projection, cloud.spacing);
-  if (first <= 0.0) return 0.0;
-  // A quarter of a radius apart, a stretch of tube still has some ten votes in a voxel of segment_by_votes.
-  const FilteredCloud sample = thinned(cloud, first / 4.0, projection, first);
-  auto segments = segment_by_votes(sample, first);
-  std::sort(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) { return a.size() > b.size(); });
-  const Vec3 viewpoint = projection.viewpoint().cast<double>();
-  std::vector<TubePiece> pieces;
-  for (std::size_t k = 0; k < segments.size() && pieces.size() < kPieces; ++k)
-    if (auto piece = fit_centerline(sample, {segments[k], VoteGraph(sample, segments[k], first)}, {}, first, viewpoint))
-      pieces.push_back(std::move(*piece));
-  return refine_radius(pieces, sample.points, first);
-}
-
-/// Where points are sparse, normals from as many as a known radius would not let in are too flat: the radius that they
-/// give makes better ones, and those a better radius.
-double find_radius(FilteredCloud& cloud, const ViewProjection& projection) {
-  double radius = estimate_radius_of(cloud, projection);
-  const double reach = normal_radius(cloud.spacing, radius);
-  if (radius <= 0.0 || reach > 0.9 * normal_radius(cloud.spacing, 0.0)) return radius;
-  cloud.normals = estimate_normals(projection, cloud.points, reach);
-  if (const double refined = estimate_radius_of(cloud, projection); refined > 0.0) radius = refined;
-  return radius;
-}
-
 std::vector<TubePiece> find_cylinder_pieces(const FilteredCloud& cloud, const std::vector<Segment>& segments,
                                             double radius, const RegionGrowingOptions& options) {
   std::vector<TubePiece> pieces;
@@ -68,59 +45,110 @@ std::vector<TubePiece> find_cylinder_pieces(const FilteredCloud& cloud, const st
   return pieces;
 }
 
-/// Whether the point may be of the tube's surface: within half a radius, beyond which are bridges' errors and strays.
-bool is_about(const NearestSurface& nearest, double radius) {
-  return nearest.surface != NearestSurface::kNone && std::abs(double(nearest.distance)) < radius / 2.0;
+std::vector<TubeModel> tubes_of_class(const TubeClass& found, const OcclusionTest& scan, double tube_length,
+                                      ModelingResult& result) {
+  const OcclusionTest occlusion = scan.with_radius(found.radius);
+  Joining joining = join_pieces(found.pieces, occlusion, tube_length);
+  if (result.tube_length <= 0.0) result.tube_length = joining.tube_length;
+  return joining.tubes_branch ? join_branches(joining.paths, found.radius, occlusion, tube_length)
+                              : unbranched(std::move(joining.paths), found.radius);
 }
 
-double standard_deviation(const std::vector<NearestSurface>& nearest, double radius) {
-  double squares = 0.0, count = 0.0;
-  for (const NearestSurface& n : nearest)
-    if (is_about(n, radius)) squares += double(n.distance) * double(n.distance), count += 1.0;
-  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+/// Steps 2 to 4 of `--method region_growing`.
+std::vector<TubeModel> grow_tubes(FilteredCloud& cloud, const ViewProjection& projection, double radius,
+                                  const ModelingOptions& options, StageSeconds& seconds, Stopwatch& watch) {
+  add_normals(cloud, projection, radius);
+  watch.lap(seconds.filtering);
+  const std::vector<Segment> segments = grow_regions(cloud, options.region_growing);
+  watch.lap(seconds.segmentation);
+  const std::vector<TubePiece> pieces = find_cylinder_pieces(cloud, segments, radius, options.region_growing);
+  watch.lap(seconds.fitting);
+  auto tubes = join_greedily(pieces, options.greedy_joining);
+  watch.lap(seconds.joining);
+  return tubes;
 }
 
-/// The nearest tube of each point, in `surface`.
-std::vector<NearestSurface> nearest_tubes(const FilteredCloud& cloud, const ModelingResult& result) {
-  std::vector<TubeSurface> surfaces;
-  std::vector<std::uint32_t> tube_of_surface;
-  for (std::uint32_t t = 0; t < result.tubes.size(); ++t)
-    for (const TubePath& path : result.tubes[t].paths) {
-      surfaces.push_back({path.nodes, result.tubes[t].radius});
-      tube_of_surface.push_back(t);
-    }
-  // Half a radius is what a bridge's guessed course may be off, as much again what a scanner strews about an edge. The
-  // nearest tube wins all the same.
-  auto nearest = nearest_surfaces(cloud.points, surfaces, result.radius);
-  for (NearestSurface& n : nearest)
-    if (n.surface != NearestSurface::kNone) n.surface = tube_of_surface[n.surface];
-  return nearest;
+std::vector<double> told_radii(const ModelingOptions& options) {
+  std::vector<double> radii;
+  if (options.radius > 0.0) radii.push_back(options.radius);
+  for (const OtherRadius& other : options.other_radii) radii.push_back(other.radius);
+  return radii;
 }
 
-/// Points about a tube lie on its surface; of points that happen to be somewhere within half a radius, two fifths lie in
-/// the nearest two fifths. True if any tube went.
-bool drop_tubes_of_chance(ModelingResult& result, const std::vector<NearestSurface>& nearest) {
-  std::vector<double> points(result.tubes.size(), 0.0), on_surface(result.tubes.size(), 0.0);
-  for (const NearestSurface& n : nearest) {
-    if (!is_about(n, result.radius)) continue;
-    points[n.surface] += 1.0;
-    if (std::abs(double(n.distance)) < result.radius / 5.0) on_surface[n.surface] += 1.0;
+/// Some scanners write a pixel without a measurement as the point (0, 0, 0). The points with those not finite; none where
+/// at most one lies there.
+std::vector<cloud::Point> without_zero_points(std::span<const cloud::Point> points) {
+  const auto is_zero = [](const cloud::Point& point) { return point.isZero(0.0f); };
+  if (std::ranges::count_if(points, is_zero) <= 1) return {};
+  std::vector<cloud::Point> measured(points.begin(), points.end());
+  std::ranges::replace_if(measured, is_zero,
+                          cloud::Point(cloud::Point::Constant(std::numeric_limits<float>::quiet_NaN())));
+  return measured;
+}
+
+/// A known bin's floor and walls are background where the cloud shows them; a bin that it shows elsewhere is moved there,
+/// and one that it does not show is unknown.
+Background find_surroundings(ModelingInput& input, const ViewProjection& projection, const FilteringOptions& options) {
+  if (input.bin && bin_is_in_place(input, std::max(options.bin_margin / 2.0, 1e-4)))
+    return background_of_bin(input, options);
+  Background background = find_background(input, projection);
+  if (!input.bin) return background;
+  const auto pose = refined_bin_pose(input, background.regions);
+  if (!pose) {
+    input.bin.reset();
+    return background;
   }
-  std::size_t index = 0;
-  return std::erase_if(result.tubes, [&](const TubeModel&) {
-           const bool is_chance = on_surface[index] < 0.6 * points[index];
-           ++index;
-           return is_chance;
-         }) > 0;
+  input.world_from_bin = *pose;
+  return background_of_bin(input, options);
 }
 
-std::vector<cloud::Label> label_points(const FilteredCloud& cloud, ModelingResult& result) {
-  auto nearest = nearest_tubes(cloud, result);
-  if (drop_tubes_of_chance(result, nearest)) nearest = nearest_tubes(cloud, result);
-  result.noise = standard_deviation(nearest, result.radius);
-  std::vector<cloud::Label> labels;
-  for (const NearestSurface& n : nearest) labels.push_back(n.surface == NearestSurface::kNone ? 0 : n.surface + 1);
-  return labels;
+/// Radii and pieces; of `--method region_growing`, which finds pieces of its own, a told radius alone.
+std::vector<TubeClass> find_classes(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& scan,
+                                    double noise, const ModelingOptions& options) {
+  const std::vector<double> radii = told_radii(options);
+  if (options.method == ModelingMethod::region_growing && !radii.empty())
+    return {{.radius = radii.front(), .radius_error = 0.0, .pieces = {}}};
+  return find_tube_classes(cloud, projection, scan, noise, radii);
+}
+
+/// What lies outside the box that tubes are looked for in counts as background.
+void crop(Background& background, const ModelingInput& input, const ModelingOptions& options) {
+  if (options.crop_min == options.crop_max) return;
+  const Eigen::AlignedBox3d box(options.crop_min.cwiseMin(options.crop_max),
+                                options.crop_min.cwiseMax(options.crop_max));
+  std::erase_if(background.foreground, [&](std::uint32_t i) { return !box.contains(input.points[i].cast<double>()); });
+}
+
+/// Labels of the filtered points, and of those that a plane took from a tube.
+void label(const ModelingInput& input, const Background& background, FilteredCloud& cloud,
+           const ModelingOptions& options, ModelingResult& result) {
+  PointLabels labels = label_points(cloud.points, result.tubes, background.noise);
+  result.noise = labels.noise;
+  result.labels = std::move(labels.labels);
+  result.source = std::move(cloud.source);
+  const auto unexplained = std::ranges::count(result.labels, cloud::Label{0});
+  result.found.unexplained = static_cast<double>(unexplained) / static_cast<double>(result.labels.size());
+  const bool adds = options.filtering.ratio >= 1.0 && !input.bin;
+  if (!adds && !options.label_all) return;
+
+  std::vector<cloud::Point> points;
+  for (const std::uint32_t i : background.set_aside) points.push_back(input.points[i]);
+  const auto set_aside = label_set_aside(points, result.tubes, std::max(background.noise, labels.noise / 2.0));
+  for (std::size_t k = 0; adds && k < points.size(); ++k) {
+    if (set_aside[k] == 0) continue;
+    result.source.push_back(background.set_aside[k]);
+    result.labels.push_back(set_aside[k]);
+  }
+  if (!options.label_all) return;
+  result.all_labels.assign(input.points.size(), 0);
+  if (options.filtering.ratio < 1.0) {
+    points.clear();
+    for (const std::uint32_t i : background.foreground) points.push_back(input.points[i]);
+    const auto all = label_points(points, result.tubes, background.noise);
+    for (std::size_t k = 0; k < points.size(); ++k) result.all_labels[background.foreground[k]] = all.labels[k];
+  }
+  for (std::size_t k = 0; k < set_aside.size(); ++k) result.all_labels[background.set_aside[k]] = set_aside[k];
+  for (std::size_t k = 0; k < result.source.size(); ++k) result.all_labels[result.source[k]] = result.labels[k];
 }
 
 }  // namespace
@@ -129,8 +157,19 @@ void describe(Fields& fields, ModelingOptions& options) {
   fields.choice("method", options.method, {"centerline", "region_growing"}, "how tubes are found");
   fields.seed("seed", options.seed, "of downsampling and of RANSAC");
   fields.number("radius", options.radius, {0.0, 1.0}, "m", "outer radius of the tubes; 0: estimated from the cloud");
+  fields.list(
+      "other_radii", "where tubes of several radii are told", options.other_radii.size(),
+      [&](std::size_t size) { options.other_radii.resize(size); },
+      [&](Fields& inner, std::size_t i) {
+        inner.number("radius", options.other_radii[i].radius, {1e-6, 1.0}, "m", "outer radius of more of the tubes");
+      });
   fields.number("tube_length", options.tube_length, {0.0, 100.0}, "m",
                 "length of every tube; 0: what the tubes in sight agree on, if they do");
+  fields.vector("up", options.up, {-1.0, 1.0}, "",
+                "against gravity, in the cloud's frame; zeros: found from what the tubes lie on");
+  fields.vector("crop_min", options.crop_min, {-1000.0, 1000.0}, "m",
+                "corner of the box that tubes are looked for in, in the cloud's frame; as crop_max: everywhere");
+  fields.vector("crop_max", options.crop_max, {-1000.0, 1000.0}, "m", "the opposite corner");
   fields.group("filtering", "step 1", [&](Fields& inner) { describe(inner, options.filtering); });
   fields.group("region_growing", "steps 2 and 3 of that method",
                [&](Fields& inner) { describe(inner, options.region_growing); });
@@ -138,44 +177,44 @@ void describe(Fields& fields, ModelingOptions& options) {
                [&](Fields& inner) { describe(inner, options.greedy_joining); });
 }
 
-ModelingResult model_tubes(const ModelingInput& input, const ModelingOptions& options) {
+ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& options) {
   ModelingResult result;
   Stopwatch watch;
 
+  ModelingInput input = told;
+  const std::vector<cloud::Point> measured = without_zero_points(told.points);
+  if (!measured.empty()) input.points = measured;
   const ViewProjection projection = view_of(input);
-  FilteredCloud cloud = filter(input, projection, options.filtering, options.seed);
-  if (options.radius <= 0.0 || options.method == ModelingMethod::region_growing)
-    add_normals(cloud, projection, options.radius);
-  result.radius = options.radius > 0.0 ? options.radius : find_radius(cloud, projection);
+  Background background = find_surroundings(input, projection, options.filtering);
+  if (told.bin && !input.bin)
+    result.found.doubts.push_back("the bin that was told is not in the cloud: is its pose right?");
+  crop(background, input, options);
+  FilteredCloud cloud = filter(input, projection, background.foreground, options.filtering, options.seed);
   result.spacing = cloud.spacing;
+  describe_scene(background, projection, options.up, result.found);
+  OcclusionTest scan(input, projection, cloud.spacing * std::sqrt(options.filtering.ratio), 0.0);
+  scan.add_solids(solids_of(background));
+  watch.lap(result.seconds.filtering);
 
-  if (result.radius > 0.0 && options.method == ModelingMethod::centerline) {
-    // Points that lie closer together cost time and add nothing: these make 24 votes a voxel of segment_by_votes.
-    const FilteredCloud sample = thinned(cloud, result.radius / 6.0, projection, result.radius);
-    watch.lap(result.seconds.filtering);
-    const std::vector<Segment> segments = segment_by_votes(sample, result.radius);
-    watch.lap(result.seconds.segmentation);
-    const std::vector<TubePiece> pieces = find_centerline_pieces(sample, segments, projection, result.radius);
-    watch.lap(result.seconds.fitting);
-    const OcclusionTest occlusion(input, projection, cloud.spacing * std::sqrt(options.filtering.ratio), result.radius);
-    Joining joining = join_pieces(pieces, occlusion, options.tube_length);
-    result.tubes = joining.tubes_branch ? join_branches(joining.paths, result.radius, occlusion, options.tube_length)
-                                        : unbranched(std::move(joining.paths), result.radius);
-    result.tube_length = joining.tube_length;
+  const std::vector<TubeClass> classes = find_classes(cloud, projection, scan, background.noise, options);
+  for (const TubeClass& found : classes) {
+    result.radii.push_back(found.radius);
+    result.radius_errors.push_back(found.radius_error);
+  }
+  if (!classes.empty()) result.radius = classes.front().radius;
+  watch.lap(result.seconds.fitting);
+
+  if (options.method == ModelingMethod::centerline) {
+    for (const TubeClass& found : classes)
+      std::ranges::move(tubes_of_class(found, scan, options.tube_length, result), std::back_inserter(result.tubes));
     watch.lap(result.seconds.joining);
   } else if (result.radius > 0.0) {
-    watch.lap(result.seconds.filtering);
-    const std::vector<Segment> segments = grow_regions(cloud, options.region_growing);
-    watch.lap(result.seconds.segmentation);
-    const std::vector<TubePiece> pieces = find_cylinder_pieces(cloud, segments, result.radius, options.region_growing);
-    watch.lap(result.seconds.fitting);
-    result.tubes = join_greedily(pieces, options.greedy_joining);
-    watch.lap(result.seconds.joining);
+    result.tubes = grow_tubes(cloud, projection, result.radius, options, result.seconds, watch);
   }
 
-  result.labels = label_points(cloud, result);
+  label(input, background, cloud, options, result);
+  add_doubts(result);
   watch.lap(result.seconds.labeling);
-  result.source = std::move(cloud.source);
   return result;
 }
 

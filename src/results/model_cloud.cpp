@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <new>
+#include <numbers>
 #include <numeric>
 
 #include "tubebin/cloud/cloud_io.hpp"
@@ -19,6 +20,18 @@ std::optional<scene::Bin> choose_bin(const CloudToModel& input, const ModelConfi
   if (config.bin_source == BinSource::config) return config.bin;
   if (config.bin_source == BinSource::automatic && input.scene) return input.scene->scene.bin;
   return std::nullopt;
+}
+
+/// The origin of the cloud's frame, where scene.json says of a bin's size alone.
+Pose choose_bin_pose(const ModelConfig& config) {
+  Pose pose = Pose::Identity();
+  if (config.bin_source != BinSource::config) return pose;
+  const Vec3 angles = config.bin_rotation_deg * (std::numbers::pi / 180.0);
+  pose.linear() = (Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
+                   Eigen::AngleAxisd(angles.x(), Vec3::UnitX()))
+                      .toRotationMatrix();
+  pose.translation() = config.bin_position;
+  return pose;
 }
 
 Pose choose_sensor(const CloudToModel& input, const ModelConfig& config) {
@@ -65,6 +78,10 @@ void describe(Fields& fields, ModelConfig& config) {
                 "which bin is cropped: scene.json's beside the cloud (else floor and walls are found), the one below, "
                 "or floor and walls found in the cloud");
   fields.group("bin", "used with bin_source: config", [&](Fields& inner) { describe(inner, config.bin); });
+  fields.vector("bin_position", config.bin_position, {-1000.0, 1000.0}, "m",
+                "the middle of that bin's inner floor, in the cloud's frame; the cloud refines it");
+  fields.vector("bin_rotation_deg", config.bin_rotation_deg, {-360.0, 360.0}, "degrees",
+                "roll, pitch, yaw of that bin: about x, then y, then z of the cloud's frame");
   fields.vector("viewpoint", config.viewpoint, {-1000.0, 1000.0}, "m",
                 "where the scanner stood; zeros: as the cloud's file says");
 }
@@ -108,7 +125,8 @@ modeling::ModelingResult model_cloud(const CloudToModel& input, const ModelConfi
   require_near(input);
   const modeling::ModelingInput positions{.points = input.cloud.points,
                                           .world_from_sensor = choose_sensor(input, config),
-                                          .bin = choose_bin(input, config)};
+                                          .bin = choose_bin(input, config),
+                                          .world_from_bin = choose_bin_pose(config)};
   try {
     return modeling::model_tubes(positions, config.modeling);
   } catch (const IoError& error) {
@@ -127,6 +145,15 @@ cloud::Cloud filtered_cloud(const cloud::Cloud& input, const modeling::ModelingR
     if (!input.labels.empty()) cloud.labels.push_back(input.labels[i]);
     if (!input.sources.empty()) cloud.sources.push_back(input.sources[i]);
   }
+  return cloud;
+}
+
+cloud::Cloud fully_labeled_cloud(const cloud::Cloud& input, const modeling::ModelingResult& result) {
+  cloud::Cloud cloud = input;
+  const std::vector<cloud::Color> colors = model_colors(result);
+  cloud.labels = result.all_labels;
+  cloud.colors.clear();
+  for (const cloud::Label label : cloud.labels) cloud.colors.push_back(colors[label]);
   return cloud;
 }
 

@@ -51,7 +51,7 @@ TEST(Branches, SegmentsOfTreesAreTakenApartAndThoseOfChainsAreNot) {
         {is_tree ? two_branches(0.0) : tube_along({{-0.1, 0, kRadius}, {0, 0, kRadius}, {0.1, 0.05, kRadius}})});
     const cloud::Cloud cloud = scan::scan(scene).cloud;
     const ModelingInput input = input_of(cloud, scene.bin);
-    FilteredCloud filtered = filter(input, view_of(input), {}, 1);
+    FilteredCloud filtered = filter(input, view_of(input), crop_bin(input, {}), {}, 1);
     add_normals(filtered, view_of(input), kRadius);
     const std::vector<Segment> segments = segment_by_votes(filtered, kRadius);
     ASSERT_EQ(segments.size(), 1u);
@@ -69,7 +69,7 @@ TEST(Branches, TubesThatHangTogetherByTheirEndsAreTakenApart) {
       {tube_along({{-0.10, 0.0, 0.02}, {-0.05, 0.0, 0.15}}), tube_along({{-0.10, apart, 0.02}, {-0.05, apart, 0.15}})});
   const cloud::Cloud cloud = scan::scan(scene).cloud;
   const ModelingInput input = input_of(cloud, scene.bin);
-  FilteredCloud filtered = filter(input, view_of(input), {}, 1);
+  FilteredCloud filtered = filter(input, view_of(input), crop_bin(input, {}), {}, 1);
   add_normals(filtered, view_of(input), kRadius);
   std::vector<Segment> segments = segment_by_votes(filtered, kRadius);
   ASSERT_EQ(segments.size(), 1u);  // the votes of the flat ends lie between the centrelines

@@ -223,7 +223,18 @@ TEST(Pipeline, FindsTheTubesInABinThatNobodyDescribes) {
   input.bin.reset();
   const ModelingResult result = model_tubes(input, known_radius());
   EXPECT_EQ(result.tubes.size(), 4u);
-  EXPECT_GE(micro_recall_of(result, cloud), 0.97);
+  // Strips of the bin that are too narrow to be told from tubes' sides stay in the filtered cloud, and get no label.
+  std::size_t tube_points = 0, labelled = 0, false_points = 0;
+  for (std::size_t k = 0; k < result.source.size(); ++k) {
+    const bool is_tube = cloud.labels[result.source[k]] > 0;
+    tube_points += is_tube, labelled += is_tube && result.labels[k] > 0,
+        false_points += !is_tube && result.labels[k] > 0;
+  }
+  const auto all =
+      std::count_if(cloud.labels.begin(), cloud.labels.end(), [](cloud::Label label) { return label > 0; });
+  EXPECT_GE(static_cast<double>(tube_points), 0.99 * static_cast<double>(all));
+  EXPECT_GE(static_cast<double>(labelled), 0.99 * static_cast<double>(all));
+  EXPECT_LE(static_cast<double>(false_points), 0.005 * static_cast<double>(all));
 }
 
 TEST(Pipeline, MakesNoTubesOfNoise) {

@@ -128,7 +128,8 @@ TEST(Labeling, TakesTheNearestSurfaceWithinReach) {
   const std::vector<Vec3> high = {Vec3(0, -0.1, 0.0375), Vec3(0, 0.1, 0.0375)};
   const std::vector<cloud::Point> points = {cloud::Point(0.05f, 0.0f, 0.0253f), cloud::Point(0.0f, 0.05f, 0.0505f),
                                             cloud::Point(0.05f, 0.05f, 0.0f)};
-  const auto nearest = nearest_surfaces(points, {{low, 0.0125}, {high, 0.0125}}, 0.006);
+  const auto nearest =
+      nearest_surfaces(points, {{low, 0.0125}, {high, 0.0125}}, {.seen = 0.5, .end = 0.5, .bridged = 0.5});
   EXPECT_EQ(nearest[0].surface, 0u);
   EXPECT_EQ(nearest[1].surface, 1u);
   EXPECT_EQ(nearest[2].surface, NearestSurface::kNone);

@@ -27,10 +27,10 @@ struct FilteredCloud {
   double spacing = 0.0;               ///< metres between neighbours: the root of the area that a point stands for
 };
 
-/// The filtered cloud, yet without normals: points of the bin go (find_bin_planes without a known bin), and of the others
-/// a random part stays. Throws IoError where no point is left.
-FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, const FilteringOptions& options,
-                     std::uint64_t seed);
+/// The filtered cloud, yet without normals: of the points at `indices`, all that may be the tubes', a random part stays.
+/// Throws IoError where no point is left.
+FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, std::vector<std::uint32_t> indices,
+                     const FilteringOptions& options, std::uint64_t seed);
 
 /// Estimates the cloud's normals. `radius`: of the tubes, metres; 0 where it is not known.
 void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double radius);

@@ -13,11 +13,21 @@ namespace tubebin::modeling {
 
 enum class ModelingMethod { centerline, region_growing };
 
+/// One more radius of a scene with several.
+struct OtherRadius {
+  double radius = 0.0;  ///< metres
+};
+
 struct ModelingOptions {
   ModelingMethod method = ModelingMethod::centerline;
   std::uint64_t seed = 1;
-  double radius = 0.0;       ///< metres; 0: estimated from the cloud
-  double tube_length = 0.0;  ///< metres; 0: estimated from the cloud where its tubes agree
+  double radius = 0.0;                   ///< metres; 0: all radii are estimated from the cloud
+  std::vector<OtherRadius> other_radii;  ///< beside `radius`
+  double tube_length = 0.0;              ///< metres; 0: estimated from the cloud where its tubes agree
+  Vec3 up = Vec3::Zero();        ///< against gravity, in the cloud's frame; zero: found from what the tubes lie on
+  Vec3 crop_min = Vec3::Zero();  ///< metres, of the box that tubes are looked for in; as crop_max: everywhere
+  Vec3 crop_max = Vec3::Zero();
+  bool label_all = false;  ///< also label the input's other points (ModelingResult::all_labels)
   FilteringOptions filtering;
   RegionGrowingOptions region_growing;
   GreedyJoiningOptions greedy_joining;
@@ -36,16 +46,34 @@ struct StageSeconds {
   double total() const { return filtering + segmentation + fitting + joining + labeling; }
 };
 
+/// What the scene was found to be, and what looks wrong about it.
+struct SceneFound {
+  Vec3 up = Vec3::UnitZ();          ///< unit
+  bool up_is_known = false;         ///< told, or a support was found
+  Vec3 viewpoint = Vec3::Zero();    ///< metres
+  bool viewpoint_is_told = true;    ///< else found from the grid of an organized cloud
+  std::size_t flat_regions = 0;     ///< set aside as floor, walls and other obstacles
+  double unexplained = 0.0;         ///< part of the filtered points that no tube explains
+  std::vector<std::string> doubts;  ///< why the result may not be trusted, as sentences
+};
+
 struct ModelingResult {
   std::vector<std::uint32_t> source;  ///< of each filtered point, its index in the input
   std::vector<cloud::Label> labels;   ///< of each filtered point: k for tubes[k - 1], 0 where it belongs to none
   std::vector<TubeModel> tubes;
-  double radius = 0.0;       ///< metres: as given, or as estimated
-  double tube_length = 0.0;  ///< metres: as given, or as estimated; 0 where the tubes have no common length
-  double noise = 0.0;        ///< metres, standard deviation of the points' distances to the fitted surfaces
-  double spacing = 0.0;      ///< metres between neighbouring filtered points
+  double radius = 0.0;                ///< metres: as given, or as estimated
+  std::vector<double> radii;          ///< metres, of all tubes, the commonest first
+  std::vector<double> radius_errors;  ///< metres, standard deviations; 0 where told
+  double tube_length = 0.0;           ///< metres: as given, or as estimated; 0 where the tubes have no common length
+  double noise = 0.0;                 ///< metres, standard deviation of the points' distances to the fitted surfaces
+  double spacing = 0.0;               ///< metres between neighbouring filtered points
   StageSeconds seconds;
+  SceneFound found;
+  std::vector<cloud::Label> all_labels;  ///< of each point of the input, with ModelingOptions::label_all
 };
+
+/// One line on what the scene was found to be.
+std::string describe_found(const ModelingResult& result);
 
 ModelingResult model_tubes(const ModelingInput& input, const ModelingOptions& options);
 

@@ -70,17 +70,22 @@ class RangeImage {
   enum class Evidence {
     hidden,   ///< the scanner measured something nearer: what is at the point cannot be seen
     surface,  ///< the scanner measured a surface at the point, within the tolerance
-    empty     ///< the scanner saw through the point: nothing is there
+    empty,    ///< the scanner saw through the point: nothing is there
+    no_data,  ///< the scanner measured nothing in this direction
+    outside   ///< the scan is a picture that does not reach there
   };
   /// What the scan says about a surface at `point`.
   Evidence evidence(const cloud::Point& point, float tolerance) const;
 
  private:
+  bool is_filled_up_to_borders() const;
+
   ViewProjection projection_;
   float inverse_cell_;
   float u_min_ = 0.0f, v_min_ = 0.0f;
   int columns_ = 0, rows_ = 0;
   std::vector<float> nearest_;  ///< infinity where nothing was measured
+  bool fills_picture_ = false;  ///< measured up to its borders, and so cut off there
 };
 
 }  // namespace tubebin::modeling

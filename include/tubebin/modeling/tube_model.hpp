@@ -16,6 +16,7 @@ struct TubePiece {
   std::vector<Vec3> nodes;  ///< metres, world frame; at least two
   double radius = 0.0;      ///< metres
   Segment points;           ///< that it was fitted to
+  double evidence = 0.0;    ///< nats: log of how much likelier its points are of a tube than of a flat strip
 
   double length() const;
 };
@@ -24,6 +25,9 @@ struct TubePiece {
 struct TubePath {
   std::vector<Vec3> nodes;    ///< cylinder i reaches from nodes[i] to nodes[i + 1]; metres, world frame
   std::vector<bool> bridged;  ///< of cylinder i: it spans a stretch without points, from one piece to the next
+  std::vector<double> bridge_odds =
+      {};                 ///< nats, of the bridges in order: log of how much likelier the scan is with it
+  double evidence = 0.0;  ///< nats: log of how much likelier its points are of a tube than of flat strips
 };
 
 /// A tube: one path, or, where it branches, a tree of them. A branch starts on the centreline of a path before it, or

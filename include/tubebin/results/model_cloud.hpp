@@ -23,7 +23,9 @@ struct ModelConfig {
   modeling::ModelingOptions modeling;
   BinSource bin_source = BinSource::automatic;
   scene::Bin bin;
-  Vec3 viewpoint = Vec3::Zero();  ///< metres; zero: as the cloud says
+  Vec3 bin_position = Vec3::Zero();      ///< metres, of the middle of its inner floor, in the cloud's frame
+  Vec3 bin_rotation_deg = Vec3::Zero();  ///< roll, pitch, yaw: about x, then y, then z of the cloud's frame
+  Vec3 viewpoint = Vec3::Zero();         ///< metres; zero: as the cloud says
 };
 
 void describe(Fields& fields, ModelConfig& config);
@@ -52,6 +54,8 @@ modeling::ModelingResult model_cloud(const CloudToModel& input, const ModelConfi
 cloud::Cloud filtered_cloud(const cloud::Cloud& input, const modeling::ModelingResult& result);
 /// The same points in the colours (label_colors) and with the labels of the tubes found.
 cloud::Cloud labeled_cloud(const cloud::Cloud& input, const modeling::ModelingResult& result);
+/// Every point of the input in its place, with the labels of the tubes found (ModelingOptions::label_all).
+cloud::Cloud fully_labeled_cloud(const cloud::Cloud& input, const modeling::ModelingResult& result);
 /// Colours of label 0 (the null colour) and every tube found.
 std::vector<cloud::Color> model_colors(const modeling::ModelingResult& result);
 

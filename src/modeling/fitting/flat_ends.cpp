@@ -17,32 +17,53 @@ struct FlatEnd {
   Vec3 outward = Vec3::Zero();  ///< unit
 };
 
-/// The plane that most of the points near the end lie on, if it looks like a tube's flat end.
-std::optional<FlatEnd> find_flat_end(const Vec3& tip, const Vec3& outward, const FilteredCloud& unexplained,
-                                     double radius) {
-  std::vector<std::uint32_t> near;
-  for (std::uint32_t i = 0; i < unexplained.points.size(); ++i) {
-    const Vec3 offset = unexplained.points[i].cast<double>() - tip;
-    if (offset.squaredNorm() < 6.25 * radius * radius && unexplained.normals[i].cast<double>().dot(outward) > 0.5)
-      near.push_back(i);
+/// Points that no piece explains, in order of x.
+class UnexplainedPoints {
+ public:
+  explicit UnexplainedPoints(const FilteredCloud& cloud) : spacing_(cloud.spacing) {
+    for (std::size_t i = 0; i < cloud.points.size(); ++i)
+      points_.push_back({cloud.points[i].cast<double>(), cloud.normals[i].cast<double>()});
+    std::ranges::stable_sort(points_, {}, x_of);
   }
+
+  double spacing() const { return spacing_; }
+  std::vector<SurfacePoint> near(const Vec3& place, double reach) const {
+    std::vector<SurfacePoint> found;
+    for (auto point = std::ranges::lower_bound(points_, place.x() - reach, {}, x_of);
+         point != points_.end() && point->position.x() <= place.x() + reach; ++point)
+      if ((point->position - place).squaredNorm() < reach * reach) found.push_back(*point);
+    return found;
+  }
+
+ private:
+  static double x_of(const SurfacePoint& point) { return point.position.x(); }
+
+  double spacing_;
+  std::vector<SurfacePoint> points_;
+};
+
+/// The plane that most of the points near the end lie on, if it looks like a tube's flat end.
+std::optional<FlatEnd> find_flat_end(const Vec3& tip, const Vec3& outward, const UnexplainedPoints& unexplained,
+                                     double radius) {
+  std::vector<SurfacePoint> near = unexplained.near(tip, 2.5 * radius);
+  std::erase_if(near, [&](const SurfacePoint& point) { return point.normal.dot(outward) <= 0.5; });
   // A tenth of the disc, at the density of points seen straight on, is enough to tell a plane.
-  const double disc = std::numbers::pi * radius * radius / (unexplained.spacing * unexplained.spacing);
+  const double disc = std::numbers::pi * radius * radius / (unexplained.spacing() * unexplained.spacing());
   const auto least = std::max(disc / 10.0, 5.0);
   if (static_cast<double>(near.size()) < least) return std::nullopt;
 
   FlatEnd end{.center = tip, .outward = outward};
   Vec3 mean = Vec3::Zero();
-  for (const std::uint32_t i : near) mean += unexplained.normals[i].cast<double>();
+  for (const auto& [point, normal] : near) mean += normal;
   end.outward = mean.normalized();
   std::vector<Vec3> on_plane;
   for (int round = 0; round < 3; ++round) {
     on_plane.clear();
     mean.setZero();
-    for (const std::uint32_t i : near)
-      if (unexplained.normals[i].cast<double>().dot(end.outward) > kParallel) {
-        on_plane.push_back(unexplained.points[i].cast<double>());
-        mean += unexplained.normals[i].cast<double>();
+    for (const auto& [point, normal] : near)
+      if (normal.dot(end.outward) > kParallel) {
+        on_plane.push_back(point);
+        mean += normal;
       }
     if (static_cast<double>(on_plane.size()) < least) return std::nullopt;
     end.outward = mean.normalized();
@@ -101,7 +122,7 @@ std::size_t count_explained(const std::vector<Vec3>& nodes, const std::vector<Ve
       std::count_if(distances.begin(), distances.end(), [&](double d) { return std::abs(d) < radius / 20.0; }));
 }
 
-void fit_last_end(TubePiece& piece, const FilteredCloud& cloud, const FilteredCloud& unexplained) {
+void fit_last_end(TubePiece& piece, const FilteredCloud& cloud, const UnexplainedPoints& unexplained) {
   const double radius = piece.radius;
   const Vec3 tip = piece.nodes.back();
   const auto end = find_flat_end(tip, (tip - piece.nodes[piece.nodes.size() - 2]).normalized(), unexplained, radius);
@@ -110,8 +131,7 @@ void fit_last_end(TubePiece& piece, const FilteredCloud& cloud, const FilteredCl
   const double reach = 5.0 * radius;
   for (const std::uint32_t i : piece.points)
     if (const Vec3 p = cloud.points[i].cast<double>(); (p - tip).norm() < reach) near.push_back(p);
-  for (const cloud::Point& point : unexplained.points)
-    if (const Vec3 p = point.cast<double>(); (p - tip).norm() < reach) near.push_back(p);
+  for (const auto& [point, normal] : unexplained.near(tip, reach)) near.push_back(point);
 
   std::size_t most = count_explained(piece.nodes, near, radius);
   for (auto& course : possible_courses(piece.nodes, *end, radius)) {
@@ -161,9 +181,10 @@ std::vector<Vec3> axis_of_flat_end(std::span<const SurfacePoint> surface, double
 
 void fit_flat_ends(std::vector<TubePiece>& pieces, const FilteredCloud& cloud, const FilteredCloud& unexplained) {
   if (unexplained.points.empty()) return;
+  const UnexplainedPoints points(unexplained);
   for (TubePiece& piece : pieces)
     for (int end = 0; end < 2; ++end) {
-      fit_last_end(piece, cloud, unexplained);
+      fit_last_end(piece, cloud, points);
       std::reverse(piece.nodes.begin(), piece.nodes.end());
     }
 }

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include "modeling/input/bin_planes.hpp"
 #include "modeling/input/normals.hpp"
 #include "modeling/input/view_grid.hpp"
 #include "tubebin/core/error.hpp"
@@ -93,9 +92,8 @@ ViewProjection view_of(const ModelingInput& input) {
   return {input.world_from_sensor, box.isEmpty() ? cloud::Point(cloud::Point::Zero()) : cloud::Point(box.center())};
 }
 
-FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, const FilteringOptions& options,
-                     std::uint64_t seed) {
-  auto indices = input.bin ? crop_bin(input, options) : crop_planes(input, projection, options, seed);
+FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, std::vector<std::uint32_t> indices,
+                     const FilteringOptions& options, std::uint64_t seed) {
   if (options.remove_outliers) indices = remove_outliers(projection, input.points, indices);
   if (indices.empty()) throw IoError("no point lies in the bin: is its place right, and is the cloud in metres?");
   indices = downsample(input.points, std::move(indices), options.ratio, seed);

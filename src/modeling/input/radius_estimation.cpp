@@ -76,11 +76,11 @@ double weighted_median(std::vector<MeasuredRadius> radii) {
 
 }  // namespace
 
-double estimate_radius(const std::vector<cloud::Point>& points, const std::vector<cloud::Point>& normals,
-                       const ViewProjection& projection, double spacing) {
-  if (points.empty()) return 0.0;
-  // Some hundred places are enough for a median. Neighbours within four spacings, about fifty of them.
-  constexpr std::size_t kPlaces = 400;
+CurvedPlaces find_curved_places(const std::vector<cloud::Point>& points, const std::vector<cloud::Point>& normals,
+                                const ViewProjection& projection, double spacing) {
+  if (points.empty()) return {};
+  // Some hundred places show what is common. Neighbours within four spacings, about fifty of them.
+  constexpr std::size_t kPlaces = 600;
   const std::size_t stride = points.size() / kPlaces + 1;
   const double reach = 4.0 * spacing;
   const auto squared_reach = static_cast<float>(reach * reach);
@@ -88,8 +88,9 @@ double estimate_radius(const std::vector<cloud::Point>& points, const std::vecto
   for (std::size_t i = 0; i < points.size(); i += stride)
     nearest = std::min(nearest, (points[i] - projection.viewpoint()).norm());
   const ViewGrid grid(projection, points, static_cast<float>(reach / std::max(double(nearest), reach)));
-  std::vector<double> radii;
+  CurvedPlaces places;
   for (std::size_t i = 0; i < points.size(); i += stride) {
+    ++places.looked_at;
     if (normals[i].isZero()) continue;
     std::vector<std::pair<cloud::Point, cloud::Point>> neighbors;
     for (int row = grid.row(i) - 1; row <= grid.row(i) + 1; ++row) {
@@ -101,9 +102,23 @@ double estimate_radius(const std::vector<cloud::Point>& points, const std::vecto
       }
     }
     const double curvature = neighbors.size() < 6 ? 0.0 : cylinder_curvature(points[i], normals[i], neighbors);
-    if (curvature > 0.0) radii.push_back(1.0 / curvature);
+    if (curvature > 0.0) places.radii.push_back(1.0 / curvature);
   }
-  return radii.size() < 10 ? 0.0 : median(radii);
+  return places;
+}
+
+CommonRadius commonest_radius(std::vector<double> radii, const std::vector<double>& tried) {
+  std::erase_if(radii, [&](double radius) {
+    return std::ranges::any_of(tried, [&](double other) { return std::abs(std::log(radius / other)) < 0.15; });
+  });
+  std::ranges::sort(radii);
+  CommonRadius common;
+  for (std::size_t first = 0, last = 0; first < radii.size(); ++first) {
+    while (last < radii.size() && radii[last] < 1.5 * radii[first]) ++last;
+    if (last - first <= common.places) continue;
+    common = {.radius = radii[first + (last - first) / 2], .places = last - first};
+  }
+  return common;
 }
 
 double refine_radius(const std::vector<TubePiece>& pieces, const std::vector<cloud::Point>& points, double radius) {

@@ -8,10 +8,22 @@
 
 namespace tubebin::modeling {
 
-/// The median radius of curvature of the surface, metres: on a cylinder, normals turn by 1 / r a metre across the axis
-/// and not at all along it. 0 where the surface does not curve that way.
-double estimate_radius(const std::vector<cloud::Point>& points, const std::vector<cloud::Point>& normals,
-                       const ViewProjection& projection, double spacing);
+/// Radii of curvature at places spread over the surface, metres: on a cylinder, normals turn by 1 / r a metre across the
+/// axis and not at all along it. Places where the surface does not curve that way have none.
+struct CurvedPlaces {
+  std::vector<double> radii;
+  std::size_t looked_at = 0;
+};
+CurvedPlaces find_curved_places(const std::vector<cloud::Point>& points, const std::vector<cloud::Point>& normals,
+                                const ViewProjection& projection, double spacing);
+
+/// A radius, metres, and how many places show it.
+struct CommonRadius {
+  double radius = 0.0;
+  std::size_t places = 0;
+};
+/// The one that most places show, within a quarter, none of the `tried` ones.
+CommonRadius commonest_radius(std::vector<double> radii, const std::vector<double>& tried);
 
 /// The median radius of the circles that fit the points about the pieces' cylinders, seen along their axes (Kasa
 /// 1976), metres; `radius` where no cylinder is long enough to tell.

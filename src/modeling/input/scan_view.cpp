@@ -72,6 +72,22 @@ RangeImage::RangeImage(const ViewProjection& projection, std::span<const cloud::
     float& nearest = nearest_[static_cast<std::size_t>(row * columns_ + column)];
     nearest = std::min(nearest, image.range);
   });
+  fills_picture_ = is_filled_up_to_borders();
+}
+
+bool RangeImage::is_filled_up_to_borders() const {
+  const auto is_measured = [&](int row, int column) {
+    return nearest_[static_cast<std::size_t>(row * columns_ + column)] < std::numeric_limits<float>::infinity();
+  };
+  // The outermost cells may be half outside.
+  constexpr int kInset = 2;
+  if (rows_ <= 2 * kInset || columns_ <= 2 * kInset) return false;
+  int measured = 0, all = 0;
+  for (int row = kInset; row < rows_ - kInset; ++row)
+    for (const int column : {kInset, columns_ - 1 - kInset}) measured += is_measured(row, column), ++all;
+  for (int column = kInset; column < columns_ - kInset; ++column)
+    for (const int row : {kInset, rows_ - 1 - kInset}) measured += is_measured(row, column), ++all;
+  return 2 * measured > all;
 }
 
 RangeImage::Evidence RangeImage::evidence(const cloud::Point& point, float tolerance) const {
@@ -79,8 +95,9 @@ RangeImage::Evidence RangeImage::evidence(const cloud::Point& point, float toler
   const float column = (image.u - u_min_) * inverse_cell_;
   const float row = (image.v - v_min_) * inverse_cell_;
   if (!(column >= 0.0f && row >= 0.0f && column < static_cast<float>(columns_) && row < static_cast<float>(rows_)))
-    return Evidence::empty;
+    return fills_picture_ ? Evidence::outside : Evidence::empty;
   const float nearest = nearest_[static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column))];
+  if (nearest == std::numeric_limits<float>::infinity()) return Evidence::no_data;
   if (nearest < image.range - tolerance) return Evidence::hidden;
   return nearest > image.range + tolerance ? Evidence::empty : Evidence::surface;
 }

@@ -3,14 +3,18 @@
 #include <array>
 #include <cmath>
 
+#include "modeling/median.hpp"
+
 namespace tubebin::modeling {
 namespace {
 
 float view_cell(const ModelingInput& input, const ViewProjection& projection, double spacing) {
+  constexpr std::size_t kSample = 1000;
+  std::vector<float> ranges;
+  for (std::size_t i = 0; i < input.points.size(); i += input.points.size() / kSample + 1)
+    if (cloud::is_finite(input.points[i])) ranges.push_back((input.points[i] - projection.viewpoint()).norm());
   // Two spacings a cell: few cells of a surface are empty by chance, and a tube's gap is many cells wide still.
-  const Vec3 middle = input.world_from_bin.translation();
-  const double range = input.bin ? (middle - projection.viewpoint().cast<double>()).norm() : 1.0;
-  return static_cast<float>(2.0 * spacing / range);
+  return static_cast<float>(2.0 * spacing / (ranges.empty() ? 1.0 : double(median(ranges))));
 }
 
 }  // namespace
@@ -19,11 +23,16 @@ OcclusionTest::OcclusionTest(const ModelingInput& input, const ViewProjection& p
                              double radius)
     : viewpoint_(projection.viewpoint().cast<double>()),
       radius_(radius),
-      image_(projection, input.points, view_cell(input, projection, spacing)),
+      image_(std::make_shared<RangeImage>(projection, input.points, view_cell(input, projection, spacing))),
       bin_(input.bin),
       bin_from_world_(input.world_from_bin.inverse()) {}
 
-bool OcclusionTest::in_bin_solid(const Vec3& point) const {
+bool OcclusionTest::in_solid(const Vec3& point) const {
+  if (std::ranges::any_of(solids_, [&](const FlatRegion& solid) {
+        const double height = solid.plane.height(point);
+        return height < 0.0 && height > -2.0 * radius_ && solid.spans(point, 0.0);
+      }))
+    return true;
   if (!bin_) return false;
   const Vec3 p = bin_from_world_ * point;
   if (p.z() > bin_->height) return false;
@@ -31,16 +40,37 @@ bool OcclusionTest::in_bin_solid(const Vec3& point) const {
 }
 
 StretchEvidence OcclusionTest::around(const Vec3& center, const Vec3& direction) const {
-  if (in_bin_solid(center)) return {.hidden = 0.0, .surface = 0.0, .empty = 1.0};
+  if (in_solid(center)) return {.hidden = 0.0, .surface = 0.0, .empty = 1.0, .no_data = 0.0};
+  // Half of the width is clear of what the silhouettes' neighbours cover by chance.
+  constexpr double kMiddle[] = {-0.5, 0.0, 0.5};
+  StretchEvidence evidence = look(center, direction, kMiddle);
+  // Behind a tube that is not there the scanner would mostly have measured something, or nothing is in reach.
+  evidence.empty += evidence.no_data;
+  return evidence;
+}
+
+StretchEvidence OcclusionTest::sides(const Vec3& center, const Vec3& direction) const {
+  constexpr double kSides[] = {-0.8, 0.8};
+  return look(center, direction, kSides);
+}
+
+OcclusionTest OcclusionTest::with_radius(double radius) const {
+  OcclusionTest other = *this;
+  other.radius_ = radius;
+  return other;
+}
+
+/// At points of the surface so many radii to the right and left of the centreline, as the scanner sees it.
+StretchEvidence OcclusionTest::look(const Vec3& center, const Vec3& direction, std::span<const double> across) const {
   StretchEvidence sum;
   const Vec3 to_viewpoint = viewpoint_ - center;
   const Vec3 up = (to_viewpoint - to_viewpoint.dot(direction) * direction).normalized();
   const Vec3 side = direction.cross(up);
-  // Half of the width is clear of what the silhouettes' neighbours cover by chance. Half a radius of tolerance is far
-  // above the noise, and far below the tube's thickness by which a floor or another tube lies behind.
-  for (const double across : {-0.5, 0.0, 0.5}) {
-    const Vec3 surface = center + radius_ * (across * side + std::sqrt(1.0 - across * across) * up);
-    switch (image_.evidence(surface.cast<float>(), static_cast<float>(radius_ / 2.0))) {
+  // Half a radius of tolerance is far above the noise, and far below the tube's thickness by which a floor or another
+  // tube lies behind.
+  for (const double x : across) {
+    const Vec3 surface = center + radius_ * (x * side + std::sqrt(1.0 - x * x) * up);
+    switch (image_->evidence(surface.cast<float>(), static_cast<float>(radius_ / 2.0))) {
       case RangeImage::Evidence::hidden:
         sum.hidden += 1.0;
         break;
@@ -50,9 +80,16 @@ StretchEvidence OcclusionTest::around(const Vec3& center, const Vec3& direction)
       case RangeImage::Evidence::empty:
         sum.empty += 1.0;
         break;
+      case RangeImage::Evidence::no_data:
+        sum.no_data += 1.0;
+        break;
+      case RangeImage::Evidence::outside:
+        sum.hidden += 1.0;
+        break;
     }
   }
-  return {sum.hidden / 3.0, sum.surface / 3.0, sum.empty / 3.0};
+  const auto count = static_cast<double>(across.size());
+  return {sum.hidden / count, sum.surface / count, sum.empty / count, sum.no_data / count};
 }
 
 double OcclusionTest::empty_part(const std::vector<Vec3>& curve, double enough) const {

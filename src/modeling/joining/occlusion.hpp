@@ -1,9 +1,11 @@
 /// What the scan says about stretches of tube that it did not see.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "modeling/input/flat_regions.hpp"
 #include "tubebin/modeling/modeling_input.hpp"
 #include "tubebin/modeling/scan_view.hpp"
 
@@ -13,16 +15,23 @@ namespace tubebin::modeling {
 struct StretchEvidence {
   double hidden = 0.0;   ///< behind something nearer to the scanner: a tube may be there
   double surface = 0.0;  ///< at a measured surface: a tube may be there, or what was measured is another's
-  double empty = 0.0;    ///< seen through, or inside the bin's solids: no tube is there
+  double empty = 0.0;    ///< seen through, or inside a solid: no tube is there
+  double no_data = 0.0;  ///< where the scanner measured nothing at all
 };
 
 class OcclusionTest {
  public:
-  /// `spacing`: metres between neighbouring points of the whole input.
+  /// `spacing`: metres between neighbouring points of the whole input at their median range.
   OcclusionTest(const ModelingInput& input, const ViewProjection& projection, double spacing, double radius);
+  /// Regions with nothing behind them: no tube is there either.
+  void add_solids(std::vector<FlatRegion> regions) { solids_ = std::move(regions); }
+  /// The same scan, for tubes of another radius.
+  OcclusionTest with_radius(double radius) const;
 
   /// Of a tube's surface about one point of its centreline, over the middle of its visible width.
   StretchEvidence around(const Vec3& center, const Vec3& direction) const;
+  /// Of the sides of a tube about one point of its centreline, where they are in sight.
+  StretchEvidence sides(const Vec3& center, const Vec3& direction) const;
   /// The part of a centreline, sampled at its steps, where the scan shows that no tube is. Summed up until it is
   /// `enough`, a part of 1, to rule the whole out.
   double empty_part(const std::vector<Vec3>& curve, double enough) const;
@@ -30,12 +39,14 @@ class OcclusionTest {
   double hidden_reach(const Vec3& end, const Vec3& outward, double limit) const;
 
  private:
-  bool in_bin_solid(const Vec3& point) const;
+  StretchEvidence look(const Vec3& center, const Vec3& direction, std::span<const double> across) const;
+  bool in_solid(const Vec3& point) const;
 
   Vec3 viewpoint_;
   double radius_;
-  RangeImage image_;
+  std::shared_ptr<const RangeImage> image_;
   std::optional<scene::Bin> bin_;
+  std::vector<FlatRegion> solids_;
   Pose bin_from_world_;
 };
 

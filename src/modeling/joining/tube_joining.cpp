@@ -95,9 +95,8 @@ class Joiner {
     return seen;
   }
 
-  /// The length that tubes with both ends in sight agree on, 0 without at least two that do, and more than there are
-  /// single pieces longer than it. Of several such lengths the one with the most tube to it counts: chance shortens
-  /// tubes, by missed joins, and lengthens few.
+  /// The length that tubes with both ends in sight agree on (is_common), 0 where none is. Of several such lengths the one
+  /// with the most tube to it counts: chance shortens tubes, by missed joins, and lengthens few.
   double common_length() const {
     const double tolerance = length_tolerance();
     const std::vector<double> seen = seen_lengths();
@@ -106,19 +105,26 @@ class Joiner {
       std::size_t last = first;
       double sum = 0.0;
       while (last < seen.size() && seen[last] <= seen[first] + tolerance) sum += seen[last++];
-      if (last - first >= 2 && last - first > count_longer_pieces(seen[first] + tolerance) && sum > most)
+      if (sum > most && is_common(last - first, first, count_longer_pieces(seen[first] + tolerance)))
         most = sum, common = seen[first + (last - first) / 2];
     }
     return common;
   }
 
-  /// Whether two tubes with both ends in sight have this length, and more than there are single pieces longer than it.
+  /// Of the tubes in sight from end to end, two at least have a length that is common to all, twice as many as are
+  /// shorter by a missed join; a single piece that is longer is an end drawn out, and seldom.
+  static bool is_common(std::size_t as_long, std::size_t shorter, std::size_t longer_pieces) {
+    return as_long >= 2 && as_long >= 2 * shorter && as_long >= 6 * longer_pieces;
+  }
+
+  /// Whether enough tubes with both ends in sight have this length.
   bool is_confirmed(double length) const {
     const std::vector<double> seen = seen_lengths();
     const double tolerance = length_tolerance() / 2.0;
     const auto as_long = static_cast<std::size_t>(
         std::count_if(seen.begin(), seen.end(), [&](double other) { return std::abs(other - length) < tolerance; }));
-    return as_long >= 2 && as_long > count_longer_pieces(length + tolerance);
+    const auto shorter = static_cast<std::size_t>(std::ranges::lower_bound(seen, length - tolerance) - seen.begin());
+    return is_common(as_long, shorter, count_longer_pieces(length + tolerance));
   }
 
   /// Once the tubes' common length is known, joins that complete a tube are likelier and those that exceed it ruled
@@ -333,12 +339,14 @@ class Joiner {
     for (std::size_t k = 0; k < chain.pieces.size(); ++k) {
       auto nodes = pieces_[chain.pieces[k]].nodes;
       if (entered % 2 == 1) std::reverse(nodes.begin(), nodes.end());
+      path.evidence += pieces_[chain.pieces[k]].evidence;
       for (std::size_t n = 0; n < nodes.size(); ++n) {
         if (!path.nodes.empty()) path.bridged.push_back(n == 0);
         path.nodes.push_back(nodes[n]);
       }
       if (k == chain.path.places.size()) break;
       const JoinCandidate& join = joins_[chain.path.places[k]];
+      path.bridge_odds.push_back(-join.cost);
       entered = join.end_a / 2 == chain.pieces[k + 1] ? join.end_a : join.end_b;
     }
     return path;

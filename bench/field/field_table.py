@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""Recall and false points of model_tubes on whole clouds, nothing told, by kind of cloud.
+
+  field_table.py MODEL_TUBES FOLDER [--method centerline|region_growing] [--only KIND...] [-- OPTION...]
+
+FOLDER has either depth images with labels (KIND_N.npz: depth, label, depth_of_0, depth_step, hfov, world_from_camera, frame,
+unit, shift, yaw_deg), or is a data set of generate_dataset (SET/CASE/cloud.pcd with its own labels); its clouds are modelled
+without their scene.json, and with --scene beside it. OPTIONs go to model_tubes.
+
+recall: share of all tube points of the cloud that carry their tube's label, labels matched one to one (Hungarian).
+false: points of anything else that carry a tube's label, as a share of the tube points. seconds: of all steps, without reading
+and writing. Needs numpy and scipy.
+"""
+import argparse, json, os, shutil, subprocess, sys, tempfile
+from pathlib import Path
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+TYPES = {('F', '4'): '<f4', ('F', '8'): '<f8', ('U', '4'): '<u4', ('U', '2'): '<u2', ('U', '1'): 'u1', ('I', '4'): '<i4'}
+
+
+def read_pcd(path):
+    raw = Path(path).read_bytes()
+    end = raw.index(b'\n', raw.index(b'\nDATA ') + 1) + 1
+    head = {line.split()[0]: line.split()[1:] for line in raw[:end].decode().splitlines() if line and line[0] != '#'}
+    if head['DATA'] != ['binary']:
+        sys.exit(f'{path}: DATA {head["DATA"][0]}; only binary is read here')
+    fields = [(n, TYPES[t, s]) for n, t, s in zip(head['FIELDS'], head['TYPE'], head['SIZE'])]
+    return np.frombuffer(raw, np.dtype(fields), int(head['POINTS'][0]), end)
+
+
+def points_of(image):
+    """Points (height x width x 3) in the file's frame and unit, and the viewpoint."""
+    depth = image['depth']
+    height, width = depth.shape
+    focal = width / 2 / np.tan(image['hfov'] / 2)
+    column, row = np.meshgrid(np.arange(width) + 0.5 - width / 2, np.arange(height) + 0.5 - height / 2)
+    z = np.where(depth > 0, image['depth_of_0'] + depth * image['depth_step'], np.nan)
+    points, viewpoint = np.stack([column / focal * z, row / focal * z, z], -1), np.zeros(3)
+    if image['frame'] == 'world':
+        pose, yaw = image['world_from_camera'], np.radians(image['yaw_deg'])
+        turn = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
+        points = (points @ pose[:, :3].T + pose[:, 3]) @ turn.T + image['shift']
+        viewpoint = turn @ pose[:, 3] + image['shift']
+    return points / image['unit'], viewpoint / image['unit']
+
+
+def write_pcd(image, path):
+    points, viewpoint = points_of(image)
+    height, width = points.shape[:2]
+    out = np.zeros(height * width, [('x', '<f4'), ('y', '<f4'), ('z', '<f4')])
+    out['x'], out['y'], out['z'] = points.reshape(-1, 3).T
+    header = (f'VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {width}\nHEIGHT {height}\n'
+              f'VIEWPOINT {viewpoint[0]:.6f} {viewpoint[1]:.6f} {viewpoint[2]:.6f} 1 0 0 0\n'
+              f'POINTS {height * width}\nDATA binary\n')
+    Path(path).write_bytes(header.encode() + out.tobytes())
+
+
+def clouds(folder, work, with_scene):
+    """(kind, cloud file, true label of each of its points, factor to metres) of every cloud."""
+    for path in sorted(Path(folder).glob('*.npz')):
+        image = np.load(path)
+        write_pcd(image, work / 'cloud.pcd')
+        yield path.stem.rsplit('_', 1)[0], work / 'cloud.pcd', image['label'].ravel().astype(int), float(image['unit'])
+    for path in sorted(Path(folder).glob('*/*/cloud.pcd')):
+        labels = read_pcd(path)['label'].astype(int)
+        if not with_scene:
+            shutil.copy(path, work / 'cloud.pcd')
+        yield path.parent.parent.name, path if with_scene else work / 'cloud.pcd', labels, 1.0
+
+
+def model(program, cloud, unit, options, work):
+    """Labels of all points and the seconds that they took."""
+    command = [program, str(cloud), '--output', str(work / 'model'), '--full', *options]
+    if unit != 1.0:
+        command += ['--scale', str(unit)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode not in (0, 3):
+        sys.exit(f'{" ".join(command)}: {done.stderr}')
+    seconds = json.loads((work / 'model/model.json').read_text())['seconds']['total']
+    return read_pcd(work / 'model/full.pcd'), seconds
+
+
+def score(truth, full):
+    measured = np.isfinite(full['z'])
+    truth, found = truth[measured], full['label'][measured].astype(int)
+    counts = np.zeros((truth.max() + 1, found.max() + 1), int)
+    np.add.at(counts, (truth, found), 1)
+    tubes = counts[1:].sum()
+    row, column = linear_sum_assignment(-counts[1:, 1:])
+    off = int((counts[:, 1:].sum(0) > 0).sum()) - int((counts[1:].sum(1) > 0).sum())
+    return counts[1:, 1:][row, column].sum() / tubes, counts[0, 1:].sum() / tubes, off
+
+
+def main():
+    arguments, options = sys.argv[1:], []
+    if '--' in arguments:
+        options = arguments[arguments.index('--') + 1:]
+        arguments = arguments[:arguments.index('--')]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('model_tubes')
+    parser.add_argument('folder')
+    parser.add_argument('--method', default='centerline', choices=['centerline', 'region_growing'])
+    parser.add_argument('--only', nargs='*', default=[])
+    parser.add_argument('--scene', action='store_true', help='leave scene.json beside the clouds of a data set')
+    given = parser.parse_args(arguments)
+    kinds = {}
+    with tempfile.TemporaryDirectory() as work:
+        for kind, cloud, truth, unit in clouds(given.folder, Path(work), given.scene):
+            if given.only and kind not in given.only:
+                continue
+            full, seconds = model(given.model_tubes, cloud, unit, ['--method', given.method, *options], Path(work))
+            kinds.setdefault(kind, []).append((*score(truth, full), seconds))
+    print('| kind | clouds | recall, mean | least | false points, mean | most | count off by more than one | seconds, most |')
+    print('| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |')
+    for kind, rows in kinds.items():
+        recall, false, off, seconds = map(np.array, zip(*rows))
+        print(f'| {kind} | {len(rows)} | {recall.mean():.4f} | {recall.min():.4f} | {100 * false.mean():.2f} % | '
+              f'{100 * false.max():.2f} % | {(abs(off) > 1).sum()} | {seconds.max():.2f} |', flush=True)
+
+
+if __name__ == '__main__':
+    main()

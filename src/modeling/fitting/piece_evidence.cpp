@@ -1,0 +1,125 @@
+#include "modeling/fitting/piece_evidence.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tubebin::modeling {
+namespace {
+
+/// A point's place across the axis of its stretch: angle about it, and distance beyond the radius.
+struct AcrossPoint {
+  double angle = 0.0, excess = 0.0;
+};
+
+/// The piece's points by stretches of some radii, straight enough for one axis each.
+std::vector<std::vector<AcrossPoint>> points_across(const TubePiece& piece, std::span<const cloud::Point> points) {
+  struct Axis {
+    Vec3 start, along, side, up;
+    double length;
+  };
+  std::vector<Axis> axes;
+  const double most = 4.0 * piece.radius;
+  for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
+    const Vec3 whole = piece.nodes[k + 1] - piece.nodes[k];
+    const int parts = static_cast<int>(std::ceil(whole.norm() / most));
+    for (int part = 0; part < parts; ++part) {
+      const Vec3 along = whole.normalized(), side = along.unitOrthogonal();
+      axes.push_back({.start = piece.nodes[k] + double(part) / parts * whole,
+                      .along = along,
+                      .side = side,
+                      .up = along.cross(side),
+                      .length = whole.norm() / parts});
+    }
+  }
+  std::vector<std::vector<AcrossPoint>> stretches(axes.size());
+  for (const std::uint32_t i : piece.points) {
+    const Vec3 p = points[i].cast<double>();
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      const Vec3 offset = p - axes[k].start;
+      const double t = offset.dot(axes[k].along);
+      if (t < 0.0 || t > axes[k].length) continue;
+      const double x = offset.dot(axes[k].side), y = offset.dot(axes[k].up);
+      const double excess = std::hypot(x, y) - piece.radius;
+      if (std::abs(excess) > piece.radius / 3.0) continue;
+      stretches[k].push_back({.angle = std::atan2(y, x), .excess = excess});
+      break;
+    }
+  }
+  return stretches;
+}
+
+/// Sums of squares of a linear model excess = change + a cos(angle) + b sin(angle), with one change of the radius for all
+/// stretches and a shift (a, b) of each one's axis, which is eliminated (Schur complement).
+struct RadiusChange {
+  double information = 0.0, pull = 0.0, squares = 0.0, freedom = -1.0;
+
+  void add(const std::vector<AcrossPoint>& stretch) {
+    if (stretch.size() < 8) return;
+    Eigen::Matrix2d shifts = Eigen::Matrix2d::Identity() * 1e-6;
+    Eigen::Vector2d mixed = Eigen::Vector2d::Zero(), right = Eigen::Vector2d::Zero();
+    double sum = 0.0, own_squares = 0.0;
+    for (const auto& [angle, excess] : stretch) {
+      const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+      shifts += direction * direction.transpose();
+      mixed += direction;
+      right += excess * direction;
+      sum += excess;
+      own_squares += excess * excess;
+    }
+    const auto factors = shifts.ldlt();
+    const auto count = static_cast<double>(stretch.size());
+    information += count - mixed.dot(factors.solve(mixed));
+    pull += sum - mixed.dot(factors.solve(right));
+    squares += own_squares - right.dot(factors.solve(right));
+    freedom += count - 2.0;
+  }
+};
+
+/// How the visible sides look: what is seen between 50 degrees left and right of the top, as the viewpoint has it.
+void look_at_sides(const TubePiece& piece, const OcclusionTest& occlusion, PieceEvidence& evidence) {
+  double samples = 0.0;
+  for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
+    const Vec3 along = piece.nodes[k + 1] - piece.nodes[k];
+    const int steps = static_cast<int>(along.norm() / piece.radius) + 1;
+    for (int step = 0; step < steps; ++step) {
+      const StretchEvidence sides = occlusion.sides(piece.nodes[k] + (step + 0.5) / steps * along, along.normalized());
+      evidence.surface += sides.surface, evidence.empty += sides.empty;
+      samples += 1.0;
+    }
+  }
+  evidence.surface /= std::max(samples, 1.0), evidence.empty /= std::max(samples, 1.0);
+}
+
+}  // namespace
+
+PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point> points,
+                            const OcclusionTest& occlusion) {
+  PieceEvidence evidence;
+  RadiusChange change;
+  for (const auto& stretch : points_across(piece, points)) change.add(stretch);
+  if (change.information > 0.0 && change.freedom > 0.0) {
+    const double radius_change = change.pull / change.information;
+    const double squares = std::max(change.squares - radius_change * change.pull, 0.0);
+    evidence.sigma = std::sqrt(squares / change.freedom);
+    // Joints and bends that the polyline cuts leave some hundredths of a radius, whatever the noise.
+    const double error = std::max(evidence.sigma, 0.01 * piece.radius);
+    // A plane at the radius' distance is r (1 / cos(angle) - 1) off, to second order a change of r.
+    evidence.curvature = 1.0 - radius_change / piece.radius;
+    evidence.curvature_error = error / piece.radius / std::sqrt(change.information);
+  } else {
+    evidence.curvature_error = 1.0;
+  }
+  look_at_sides(piece, occlusion, evidence);
+  return evidence;
+}
+
+bool is_tube(const PieceEvidence& evidence, double radius, double noise) {
+  if (evidence.sigma > 3.0 * noise + radius / 12.0) return false;
+  if (evidence.empty > 0.3) return false;
+  // A plane has to be four standard deviations away.
+  return evidence.curvature_error < 0.25 && std::abs(evidence.curvature - 1.0) < 0.15 + 2.0 * evidence.curvature_error;
+}
+
+}  // namespace tubebin::modeling

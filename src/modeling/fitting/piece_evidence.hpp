@@ -1,0 +1,27 @@
+/// Whether a piece is a stretch of tube, or something else that cylinders happen to fit.
+#pragma once
+
+#include <span>
+
+#include "modeling/joining/occlusion.hpp"
+#include "tubebin/modeling/tube_model.hpp"
+
+namespace tubebin::modeling {
+
+/// What the points of a piece and the scan about it say of its surface.
+struct PieceEvidence {
+  double curvature = 0.0;        ///< across the axis, in units of 1 / radius: 1 on a tube of this radius, 0 on a plane
+  double curvature_error = 0.0;  ///< its standard deviation
+  double sigma = 0.0;            ///< metres, of the points' distances to the best surface of any curvature
+  double surface = 0.0;          ///< part of its visible sides where the scanner measured a surface
+  double empty = 0.0;            ///< part of them where it saw through, and so no tube is
+};
+
+PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point> points,
+                            const OcclusionTest& occlusion);
+
+/// Whether a tube explains the evidence better than any flat strip or chance: curved like a tube of this radius, as far
+/// as the points can tell, with points on its surface and no sides that the scanner saw through.
+bool is_tube(const PieceEvidence& evidence, double radius, double noise);
+
+}  // namespace tubebin::modeling

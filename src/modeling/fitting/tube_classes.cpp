@@ -1,0 +1,161 @@
+#include "modeling/fitting/tube_classes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "modeling/fitting/centerline_fitting.hpp"
+#include "modeling/fitting/centerline_pieces.hpp"
+#include "modeling/fitting/centerline_segmentation.hpp"
+#include "modeling/fitting/piece_cleaning.hpp"
+#include "modeling/fitting/piece_evidence.hpp"
+#include "modeling/input/normals.hpp"
+#include "modeling/input/radius_estimation.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+constexpr std::size_t kMostClasses = 4, kMostTries = 8;
+
+/// So many pieces are joined in a second or two; a pile of a hundred tubes has some five hundred.
+constexpr std::size_t kMostPieces = 1500;
+
+void keep_surest(std::vector<TubePiece>& pieces) {
+  if (pieces.size() <= kMostPieces) return;
+  std::ranges::stable_sort(pieces, std::greater<>(), &TubePiece::evidence);
+  pieces.resize(kMostPieces);
+}
+
+class ClassFinder {
+ public:
+  ClassFinder(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion, double noise)
+      : cloud_(cloud), projection_(projection), occlusion_(occlusion), noise_(noise) {}
+
+  std::vector<TubeClass> find_told(const std::vector<double>& radii) {
+    std::vector<TubeClass> classes;
+    for (const double radius : radii) {
+      classes.push_back(pieces_of(rest_.points.empty() ? cloud_ : rest_, radius));
+      if (radii.size() > 1) set_aside(classes.back());
+    }
+    return classes;
+  }
+
+  std::vector<TubeClass> find_all() {
+    std::vector<TubeClass> classes;
+    std::vector<double> tried;
+    const std::size_t enough = cloud_.points.size() / 50;
+    for (std::size_t k = 0; k < kMostTries && classes.size() < kMostClasses; ++k) {
+      FilteredCloud& left = classes.empty() ? cloud_ : rest_;
+      if (!classes.empty() && left.points.size() < enough) break;
+      const double seen = likeliest_radius(left, tried, enough);
+      if (seen <= 0.0) break;
+      tried.push_back(seen);
+      TubeClass found = refined_class(left, seen);
+      if (found.pieces.empty()) continue;
+      tried.push_back(found.radius);
+      set_aside(found);
+      classes.push_back(std::move(found));
+    }
+    return classes;
+  }
+
+ private:
+  double reach(const FilteredCloud& cloud, double radius) const { return normal_radius(cloud.spacing, radius); }
+
+  /// The radius that most places of the surface show, of those that are not `tried` yet; 0 where fewer than `enough`
+  /// points show one.
+  double likeliest_radius(FilteredCloud& cloud, const std::vector<double>& tried, std::size_t enough) {
+    if (cloud.normals.empty()) add_normals(cloud, projection_, 0.0);
+    const CurvedPlaces places = find_curved_places(cloud.points, cloud.normals, projection_, cloud.spacing);
+    const CommonRadius common = commonest_radius(places.radii, tried);
+    if (common.places < 10 || common.places * cloud.points.size() < enough * places.looked_at) return 0.0;
+    return common.radius;
+  }
+
+  /// From the radius that places show to the one that the longest pieces show, and to all of its pieces.
+  TubeClass refined_class(FilteredCloud& cloud, double radius) {
+    for (int round = 0; round < 2; ++round) {
+      // Where points are sparse, normals from as many as a known radius would not let in are too flat.
+      if (reach(cloud, radius) < 0.9 * reach(cloud, round == 0 ? 0.0 : 2.0 * radius))
+        cloud.normals = estimate_normals(projection_, cloud.points, reach(cloud, radius));
+      const double refined = refined_radius(cloud, radius);
+      if (refined <= 0.0) return {};
+      const bool is_settled = std::abs(refined - radius) < 0.05 * radius;
+      radius = refined;
+      if (is_settled) break;
+    }
+    TubeClass found = pieces_of(cloud, radius);
+    const auto longest = std::ranges::max_element(found.pieces, {}, &TubePiece::length);
+    if (longest == found.pieces.end() || longest->length() < 6.0 * radius) return {};
+    return found;
+  }
+
+  /// As the longest pieces that are tubes show it; 0 where none is.
+  double refined_radius(const FilteredCloud& cloud, double radius) {
+    constexpr std::size_t kSegments = 12, kPieces = 5;
+    // A quarter of a radius apart, a stretch of tube still has some ten votes in a voxel of segment_by_votes.
+    const FilteredCloud sample = thinned(cloud, radius / 4.0, projection_, radius);
+    auto segments = segment_by_votes(sample, radius);
+    std::ranges::sort(segments, [](const Segment& a, const Segment& b) { return a.size() > b.size(); });
+    if (segments.size() > kSegments) segments.resize(kSegments);
+    const OcclusionTest occlusion = occlusion_.with_radius(radius);
+    const Vec3 viewpoint = projection_.viewpoint().cast<double>();
+    std::vector<TubePiece> pieces;
+    for (const Segment& segment : segments) {
+      auto piece = fit_centerline(sample, {segment, VoteGraph(sample, segment, radius)}, {}, radius, viewpoint);
+      if (!piece) continue;
+      const PieceEvidence evidence = examine_piece(*piece, sample.points, occlusion);
+      if (std::abs(evidence.curvature - 1.0) > 0.4 || evidence.empty > 0.3) continue;
+      pieces.push_back(std::move(*piece));
+      if (pieces.size() == kPieces) break;
+    }
+    return pieces.empty() ? 0.0 : refine_radius(pieces, sample.points, radius);
+  }
+
+  TubeClass pieces_of(const FilteredCloud& cloud, double radius) {
+    // Points that lie closer together cost time and add nothing: these make 24 votes a voxel of segment_by_votes.
+    const FilteredCloud sample = thinned(cloud, radius / 6.0, projection_, radius);
+    TubeClass found{.radius = radius, .radius_error = 0.0, .pieces = {}};
+    const OcclusionTest occlusion = occlusion_.with_radius(radius);
+    double information = 0.0;
+    for (TubePiece& piece : find_centerline_pieces(sample, segment_by_votes(sample, radius), projection_, radius)) {
+      const PieceEvidence evidence = examine_piece(piece, sample.points, occlusion);
+      if (!is_tube(evidence, radius, noise_)) continue;
+      // Of two normal errors, the plane's is that many standard deviations.
+      const double deviations = evidence.curvature / evidence.curvature_error;
+      piece.evidence = 0.5 * deviations * deviations;
+      information += 1.0 / (evidence.curvature_error * evidence.curvature_error);
+      found.pieces.push_back(std::move(piece));
+    }
+    if (information > 0.0) found.radius_error = radius / std::sqrt(information);
+    keep_surest(found.pieces);
+    return found;
+  }
+
+  /// What the class does not explain is left for the others.
+  void set_aside(const TubeClass& found) {
+    const FilteredCloud& left = rest_.points.empty() ? cloud_ : rest_;
+    FilteredCloud rest{.source = {}, .points = {}, .normals = {}, .spacing = cloud_.spacing};
+    for (const std::uint32_t i : unexplained_points(left.points, found.pieces, cloud_.spacing)) {
+      rest.source.push_back(left.source[i]);
+      rest.points.push_back(left.points[i]);
+    }
+    rest_ = std::move(rest);
+  }
+
+  FilteredCloud& cloud_;
+  const ViewProjection& projection_;
+  const OcclusionTest& occlusion_;
+  double noise_;
+  FilteredCloud rest_;
+};
+
+}  // namespace
+
+std::vector<TubeClass> find_tube_classes(FilteredCloud& cloud, const ViewProjection& projection,
+                                         const OcclusionTest& occlusion, double noise, std::vector<double> told) {
+  ClassFinder finder(cloud, projection, occlusion, noise);
+  return told.empty() ? finder.find_all() : finder.find_told(told);
+}
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,25 @@
+/// The radii of the scene's tubes, and the pieces of each.
+#pragma once
+
+#include <vector>
+
+#include "modeling/joining/occlusion.hpp"
+#include "tubebin/modeling/filtering.hpp"
+#include "tubebin/modeling/tube_model.hpp"
+
+namespace tubebin::modeling {
+
+/// Pieces of tubes of one radius.
+struct TubeClass {
+  double radius = 0.0;        ///< metres
+  double radius_error = 0.0;  ///< metres, standard deviation; 0 where the radius was told
+  std::vector<TubePiece> pieces;
+};
+
+/// Finds the pieces of tubes of each radius, the commonest first: the `told` radii (metres), or, where none is told, those
+/// that the surface's curvature shows, until what is left shows none. `cloud` gets normals where it has none. `noise`:
+/// metres, of the points across a surface; 0 where it is not known.
+std::vector<TubeClass> find_tube_classes(FilteredCloud& cloud, const ViewProjection& projection,
+                                         const OcclusionTest& occlusion, double noise, std::vector<double> told);
+
+}  // namespace tubebin::modeling

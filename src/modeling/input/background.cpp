@@ -1,0 +1,68 @@
+#include "modeling/input/background.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "modeling/input/view_grid.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// Whether nothing of a sample of the scan lies behind the region, as deep as the thickest tube is wide.
+bool is_solid(const FlatRegion& region, std::span<const cloud::Point> points, double spacing) {
+  constexpr std::size_t kSample = 20000;
+  const double deepest = 80.0 * spacing, inset = -3.0 * spacing;
+  std::size_t before = 0, behind = 0;
+  for (std::size_t i = 0; i < points.size(); i += points.size() / kSample + 1) {
+    const Vec3 p = points[i].cast<double>();
+    const double height = region.plane.height(p);
+    if (std::abs(height) > deepest || !region.spans(p, inset)) continue;
+    ++(height < -5.0 * region.noise - 0.5 * spacing ? behind : before);
+  }
+  return 50 * behind < before;
+}
+
+}  // namespace
+
+Background find_background(const ModelingInput& input, const ViewProjection& projection) {
+  Background background;
+  std::vector<std::uint32_t> finite;
+  std::vector<cloud::Point> points;
+  for (std::uint32_t i = 0; i < input.points.size(); ++i) {
+    if (!cloud::is_finite(input.points[i])) continue;
+    finite.push_back(i);
+    points.push_back(input.points[i]);
+  }
+  const ViewProjection::Images images = projection.images(points);
+  background.spacing = estimate_spacing(images);
+  background.regions = find_flat_regions(projection, points, images, background.spacing);
+  for (FlatRegion& region : background.regions) region.is_solid = is_solid(region, points, background.spacing);
+  if (!background.regions.empty()) background.noise = background.regions.front().noise;
+  // A region's outermost blocks are not all its own.
+  const double margin = 5.0 * background.spacing;
+  for (std::size_t k = 0; k < finite.size(); ++k) {
+    const Vec3 p = points[k].cast<double>();
+    const bool is_flat = std::ranges::any_of(background.regions, [&](const auto& r) { return r.holds(p, margin); });
+    (is_flat ? background.set_aside : background.foreground).push_back(finite[k]);
+  }
+  return background;
+}
+
+Background background_of_bin(const ModelingInput& input, const FilteringOptions& options) {
+  Background background{.regions = {}, .set_aside = {}, .foreground = crop_bin(input, options)};
+  auto next = background.foreground.begin();
+  for (std::uint32_t i = 0; i < input.points.size(); ++i) {
+    if (next != background.foreground.end() && *next == i) ++next;
+    else if (cloud::is_finite(input.points[i])) background.set_aside.push_back(i);
+  }
+  return background;
+}
+
+std::vector<FlatRegion> solids_of(const Background& background) {
+  std::vector<FlatRegion> solids;
+  std::ranges::copy_if(background.regions, std::back_inserter(solids), &FlatRegion::is_solid);
+  return solids;
+}
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,31 @@
+/// What of the scan stands around the tubes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "modeling/input/flat_regions.hpp"
+#include "tubebin/modeling/filtering.hpp"
+#include "tubebin/modeling/modeling_input.hpp"
+
+namespace tubebin::modeling {
+
+struct Background {
+  std::vector<FlatRegion> regions;        ///< largest first
+  std::vector<std::uint32_t> set_aside;   ///< indices of the points that lie on them
+  std::vector<std::uint32_t> foreground;  ///< indices of all other finite points
+  double noise = 0.0;                     ///< metres, across the largest regions; 0 where there is none
+  double spacing = 0.0;                   ///< metres between neighbouring points at their median range
+};
+
+/// Flat regions of any pose, and the points on them. What lies on a tube and by chance in a region's plane is set aside
+/// too: a narrow strip of the tube.
+Background find_background(const ModelingInput& input, const ViewProjection& projection);
+
+/// As the known bin has it (crop_bin), without looking for regions.
+Background background_of_bin(const ModelingInput& input, const FilteringOptions& options);
+
+/// Regions with nothing behind them.
+std::vector<FlatRegion> solids_of(const Background& background);
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,89 @@
+#include "modeling/point_labels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "modeling/labeling.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// Whether the point may be of the tube's surface: within half a radius, beyond which are bridges' errors and strays.
+bool is_about(const NearestSurface& nearest, const std::vector<TubeModel>& tubes) {
+  return nearest.surface != NearestSurface::kNone &&
+         std::abs(double(nearest.distance)) < tubes[nearest.surface].radius / 2.0;
+}
+
+double standard_deviation(const std::vector<NearestSurface>& nearest, const std::vector<TubeModel>& tubes) {
+  double squares = 0.0, count = 0.0;
+  for (const NearestSurface& n : nearest)
+    if (is_about(n, tubes)) squares += double(n.distance) * double(n.distance), count += 1.0;
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+/// The nearest tube of each point, in `surface`.
+std::vector<NearestSurface> nearest_tubes(std::span<const cloud::Point> points, const std::vector<TubeModel>& tubes,
+                                          const Reach& reach) {
+  std::vector<TubeSurface> surfaces;
+  std::vector<std::uint32_t> tube_of_surface;
+  for (std::uint32_t t = 0; t < tubes.size(); ++t)
+    for (const TubePath& path : tubes[t].paths) {
+      surfaces.push_back({.nodes = path.nodes, .radius = tubes[t].radius, .bridged = &path.bridged});
+      tube_of_surface.push_back(t);
+    }
+  auto nearest = nearest_surfaces(points, surfaces, reach);
+  for (NearestSurface& n : nearest)
+    if (n.surface != NearestSurface::kNone) n.surface = tube_of_surface[n.surface];
+  return nearest;
+}
+
+/// Points about a tube lie on its surface; of points that happen to be somewhere within half a radius, two fifths lie in
+/// the nearest two fifths. True if any tube went.
+bool drop_tubes_of_chance(std::vector<TubeModel>& tubes, const std::vector<NearestSurface>& nearest) {
+  std::vector<double> points(tubes.size(), 0.0), on_surface(tubes.size(), 0.0);
+  for (const NearestSurface& n : nearest) {
+    if (!is_about(n, tubes)) continue;
+    points[n.surface] += 1.0;
+    if (std::abs(double(n.distance)) < tubes[n.surface].radius / 5.0) on_surface[n.surface] += 1.0;
+  }
+  std::size_t index = 0;
+  return std::erase_if(tubes, [&](const TubeModel&) {
+           const bool is_chance = on_surface[index] < 0.6 * points[index];
+           ++index;
+           return is_chance;
+         }) > 0;
+}
+
+cloud::Label label_of(const NearestSurface& nearest) {
+  return nearest.surface == NearestSurface::kNone ? 0 : nearest.surface + 1;
+}
+
+}  // namespace
+
+PointLabels label_points(std::span<const cloud::Point> points, std::vector<TubeModel>& tubes, double noise) {
+  // Half a radius is what a bridge's guessed course may be off, as much again what a scanner strews about an edge. Where
+  // a tube is seen, two fifths of a radius are far more than fits are off, and keeps clear of what it lies on.
+  const double least = tubes.empty() ? 1.0 : std::ranges::min_element(tubes, {}, &TubeModel::radius)->radius;
+  const Reach reach{.seen = std::clamp(5.0 * noise / least, 0.4, 1.0), .end = 1.0, .bridged = 1.0};
+  auto nearest = nearest_tubes(points, tubes, reach);
+  if (drop_tubes_of_chance(tubes, nearest)) nearest = nearest_tubes(points, tubes, reach);
+  PointLabels result{.labels = {}, .noise = standard_deviation(nearest, tubes)};
+  result.labels.reserve(points.size());
+  for (const NearestSurface& n : nearest) result.labels.push_back(label_of(n));
+  return result;
+}
+
+std::vector<cloud::Label> label_set_aside(std::span<const cloud::Point> points, const std::vector<TubeModel>& tubes,
+                                          double noise) {
+  const auto nearest = nearest_tubes(points, tubes, {.seen = 0.2, .end = 0.2, .bridged = 0.2});
+  std::vector<cloud::Label> labels;
+  labels.reserve(points.size());
+  for (const NearestSurface& n : nearest) {
+    const cloud::Label label = label_of(n);
+    const bool is_on = label > 0 && std::abs(double(n.distance)) < 3.0 * noise + 0.02 * tubes[n.surface].radius;
+    labels.push_back(is_on ? label : 0);
+  }
+  return labels;
+}
+
+}  // namespace tubebin::modeling

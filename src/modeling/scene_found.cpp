@@ -1,0 +1,57 @@
+#include "modeling/scene_found.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tubebin::modeling {
+
+void describe_scene(const Background& background, const ViewProjection& projection, const Vec3& told_up,
+                    SceneFound& found) {
+  found.viewpoint = projection.viewpoint().cast<double>();
+  found.flat_regions = background.regions.size();
+  const auto support = std::ranges::find_if(background.regions, &FlatRegion::is_solid);
+  if (support != background.regions.end()) {
+    found.up = support->plane.normal;
+    found.up_is_known = true;
+  }
+  if (told_up.isZero()) return;
+  if (found.up_is_known && found.up.dot(told_up.normalized()) < 0.8)
+    found.doubts.push_back(fmt::format(
+        "the largest support looks along ({:.2f}, {:.2f}, {:.2f}), not along the up direction that was told",
+        found.up.x(), found.up.y(), found.up.z()));
+  found.up = told_up.normalized();
+  found.up_is_known = true;
+}
+
+std::string describe_found(const ModelingResult& result) {
+  const SceneFound& found = result.found;
+  std::string radii;
+  for (std::size_t k = 0; k < result.radii.size(); ++k)
+    radii +=
+        fmt::format("{}{:.2f} +- {:.2f} mm", k > 0 ? ", " : "", result.radii[k] * 1e3, result.radius_errors[k] * 1e3);
+  const std::string length =
+      result.tube_length > 0.0 ? fmt::format("{:.3f} m", result.tube_length) : std::string("not common");
+  return fmt::format(
+      "scene: radius {}; length {}; up {} ({:.2f}, {:.2f}, {:.2f}); viewpoint ({:.3f}, {:.3f}, {:.3f}); {} flat regions; "
+      "{:.1f} % unexplained",
+      radii.empty() ? "none" : radii, length, found.up_is_known ? "along" : "unknown, taken as", found.up.x(),
+      found.up.y(), found.up.z(), found.viewpoint.x(), found.viewpoint.y(), found.viewpoint.z(), found.flat_regions,
+      100.0 * found.unexplained);
+}
+
+void add_doubts(ModelingResult& result) {
+  auto& doubts = result.found.doubts;
+  constexpr double kWidestTube = 0.3;  // metres
+  if (result.tubes.empty())
+    doubts.push_back("nothing in the cloud is round like a tube, of any radius from 3 to 40 spacings of its points");
+  for (const double radius : result.radii)
+    if (radius > kWidestTube)
+      doubts.push_back(
+          fmt::format("a radius of {:.3g} m: is the cloud in another unit (--scale 0.001 for millimetres)?", radius));
+  if (!result.tubes.empty() && result.found.unexplained > 1.0 / 3.0)
+    doubts.push_back(
+        fmt::format("{:.0f} % of the points that are not flat lie on no tube", 100.0 * result.found.unexplained));
+}
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,16 @@
+/// What the scene was found to be.
+#pragma once
+
+#include "modeling/input/background.hpp"
+#include "tubebin/modeling/pipeline.hpp"
+
+namespace tubebin::modeling {
+
+/// Up is across the largest region with nothing behind it: floor or table; `told_up` (zero: none) counts instead.
+void describe_scene(const Background& background, const ViewProjection& projection, const Vec3& told_up,
+                    SceneFound& found);
+
+/// Says in `found.doubts` what of the result looks wrong.
+void add_doubts(ModelingResult& result);
+
+}  // namespace tubebin::modeling

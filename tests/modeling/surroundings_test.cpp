@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "modeling/fitting/piece_evidence.hpp"
+#include "modeling/input/bin_pose.hpp"
+#include "modeling/input/flat_regions.hpp"
+#include "modeling/input/view_grid.hpp"
+#include "tubebin/core/random.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+constexpr double kStep = 0.001;  // radians between pixels, and metres between points a metre away
+
+/// What a scanner at the origin, looking along z, measures of the depth z(x / z, y / z), with normal noise along the ray.
+std::vector<cloud::Point> picture(const std::function<double(double, double)>& depth, double noise) {
+  Random random(5);
+  std::vector<cloud::Point> points;
+  for (int row = -150; row < 150; ++row)
+    for (int column = -200; column < 200; ++column) {
+      const Vec3 ray(column * kStep, row * kStep, 1.0);
+      points.push_back((ray * (depth(ray.x(), ray.y()) + noise * random.normal())).cast<float>());
+    }
+  return points;
+}
+
+std::vector<FlatRegion> regions_of(const std::vector<cloud::Point>& points) {
+  const ViewProjection projection(Pose::Identity(), cloud::Point(0, 0, 1));
+  const auto images = projection.images(points);
+  return find_flat_regions(projection, points, images, estimate_spacing(images));
+}
+
+TEST(FlatRegions, FindsATiltedPlaneAndItsNoise) {
+  const Vec3 normal = Vec3(0.2, -0.3, -1.0).normalized();
+  const double offset = normal.z();  // through (0, 0, 1)
+  const auto regions =
+      regions_of(picture([&](double u, double v) { return offset / normal.dot(Vec3(u, v, 1.0)); }, 0.0002));
+  ASSERT_EQ(regions.size(), 1u);
+  EXPECT_GT(regions[0].plane.normal.dot(normal), 1.0 - 1e-6);
+  EXPECT_NEAR(regions[0].plane.offset, offset, 1e-5);
+  EXPECT_NEAR(regions[0].noise, 0.0002 * std::abs(normal.z()), 0.00002);
+}
+
+TEST(FlatRegions, AFloorInTwoPartsIsOneAndAStepIsNone) {
+  const auto parts = regions_of(picture([](double u, double) { return std::abs(u) < 0.05 ? 0.9 : 1.0; }, 0.0001));
+  ASSERT_EQ(parts.size(), 2u);  // the floor on both sides, and the top of what stands on it
+  EXPECT_NEAR(parts[0].plane.offset, -1.0, 1e-4);
+  EXPECT_NEAR(parts[0].half_extents[0], 0.2, 0.01);
+  EXPECT_NEAR(parts[1].plane.offset, -0.9, 1e-4);
+}
+
+/// A floor of parallel cylinders: no part of it is flat, however thick they are.
+TEST(FlatRegions, TubesOfThreeToFortySpacingsAreNotFlat) {
+  for (const double radius : {0.003, 0.0125, 0.025, 0.04}) {
+    const auto regions = regions_of(picture(
+        [&](double u, double) {
+          const double x = std::remainder(u, 2.0 * radius);
+          return 1.0 - std::sqrt(std::max(radius * radius - x * x, 0.0));
+        },
+        0.0001));
+    EXPECT_TRUE(regions.empty()) << radius << ": " << regions.size() << " regions";
+  }
+}
+
+/// A strip of a cylinder's surface, or of its tangent plane, of this half width.
+std::vector<cloud::Point> strip(double radius, double half_width, bool is_flat, double noise) {
+  Random random(3);
+  std::vector<cloud::Point> points;
+  for (double along = 0.0; along < 0.1; along += 0.0015)
+    for (double across = -half_width; across <= half_width; across += 0.0015) {
+      const double height = is_flat ? radius : std::sqrt(radius * radius - across * across);
+      points.push_back(Vec3(along, across, height + noise * random.normal()).cast<float>());
+    }
+  return points;
+}
+
+PieceEvidence evidence_of(const std::vector<cloud::Point>& points, double radius) {
+  TubePiece piece{.nodes = {Vec3(-0.001, 0, 0), Vec3(0.101, 0, 0)}, .radius = radius, .points = {}};
+  for (std::uint32_t i = 0; i < points.size(); ++i) piece.points.push_back(i);
+  const ModelingInput input{.points = points, .world_from_sensor = Pose(Eigen::Translation3d(0.05, 0.0, 1.0))};
+  const OcclusionTest occlusion(input, ViewProjection(input.world_from_sensor, cloud::Point(0.05f, 0, 0)), 0.0015,
+                                radius);
+  return examine_piece(piece, points, occlusion);
+}
+
+TEST(PieceEvidence, TellsASideFromAStripOfAPlane) {
+  for (const double noise : {0.0001, 0.0003}) {
+    const PieceEvidence side = evidence_of(strip(0.0125, 0.006, false, noise), 0.0125);
+    EXPECT_NEAR(side.curvature, 1.0, 4.0 * side.curvature_error + 0.02);
+    EXPECT_LT(side.curvature_error, 0.1);
+    EXPECT_NEAR(side.sigma, noise, 0.2 * noise + 0.00002);
+    const PieceEvidence flat = evidence_of(strip(0.0125, 0.006, true, noise), 0.0125);
+    EXPECT_NEAR(flat.curvature, 0.0, 4.0 * flat.curvature_error + 0.15);  // to second order in the angle
+    EXPECT_FALSE(is_tube(flat, 0.0125, noise));
+  }
+}
+
+TEST(PieceEvidence, KnowsARadiusFromAnother) {
+  const PieceEvidence thicker = evidence_of(strip(0.016, 0.009, false, 0.0001), 0.0125);
+  EXPECT_NEAR(thicker.curvature, 0.0125 / 0.016, 0.1);
+  EXPECT_FALSE(is_tube(thicker, 0.0125, 0.0001));
+}
+
+/// Floor and two walls of a bin that stands elsewhere than it is said to.
+TEST(BinPose, IsRefinedByFloorAndWalls) {
+  ModelingInput input;
+  input.bin = scene::Bin{};
+  Pose truth = Pose::Identity();
+  truth.linear() = Eigen::AngleAxisd(0.017, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+  truth.translation() = Vec3(0.010, -0.006, 0.004);
+  const auto region = [&](const Vec3& normal, const Vec3& center, double half_u, double half_v) {
+    FlatRegion flat;
+    flat.plane.normal = truth.linear() * normal;
+    flat.center = truth * center;
+    flat.plane.offset = flat.plane.normal.dot(flat.center);
+    flat.axes[0] = truth.linear() * normal.unitOrthogonal();
+    flat.axes[1] = flat.plane.normal.cross(flat.axes[0]);
+    flat.half_extents[0] = half_u, flat.half_extents[1] = half_v;
+    return flat;
+  };
+  const double x = input.bin->length / 2.0, y = input.bin->width / 2.0;
+  std::vector<FlatRegion> regions = {region(Vec3::UnitZ(), Vec3(0, 0, 0), 0.15, 0.15),
+                                     region(Vec3::UnitX(), Vec3(-x, 0, 0.1), 0.05, 0.05),
+                                     region(-Vec3::UnitY(), Vec3(0, y, 0.1), 0.05, 0.05)};
+  const auto pose = refined_bin_pose(input, regions);
+  ASSERT_TRUE(pose.has_value());
+  EXPECT_LT((pose->translation() - truth.translation()).norm(), 1e-5);
+  EXPECT_LT((pose->linear() - truth.linear()).norm(), 1e-4);
+  for (FlatRegion& moved : regions)
+    moved.center += Vec3(1, 0, 1), moved.plane.offset = moved.plane.normal.dot(moved.center);
+  EXPECT_FALSE(refined_bin_pose(input, regions).has_value());  // that is another bin
+}
+
+}  // namespace
+}  // namespace tubebin::modeling
