@@ -1,9 +1,10 @@
+# Libraries behind the modules. The installed package reads this file, too: who links a module needs them all.
+include_guard(DIRECTORY)
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
-find_package(CLI11 REQUIRED)
 find_package(PNG REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(LibArchive REQUIRED)
@@ -15,8 +16,8 @@ add_library(tubebin::ode ALIAS PkgConfig::ODE)
 # sine and the like that give the same bits on every processor
 pkg_check_modules(SLEEF REQUIRED IMPORTED_TARGET sleef)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
-# Previews alone need OSMesa (gone from Mesa 25.1); without it everything else works.
-pkg_check_modules(OSMESA osmesa)
+# LZF, PCD's compression
+pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)
 
 # Embree 4 (Ubuntu 24.04) or 3 (Debian 12); src/scan/embree.hpp is the one place that tells them apart.
 find_package(embree 4 QUIET)
@@ -26,30 +27,17 @@ else()
   find_package(embree 3 REQUIRED)
   set(TUBEBIN_EMBREE_MAJOR 3)
 endif()
-add_library(tubebin_embree INTERFACE)
-target_link_libraries(tubebin_embree INTERFACE embree)
-target_compile_definitions(tubebin_embree INTERFACE TUBEBIN_EMBREE_MAJOR=${TUBEBIN_EMBREE_MAJOR})
-add_library(tubebin::embree ALIAS tubebin_embree)
+add_library(tubebin::embree INTERFACE IMPORTED)
+target_link_libraries(tubebin::embree INTERFACE embree)
+target_compile_definitions(tubebin::embree INTERFACE TUBEBIN_EMBREE_MAJOR=${TUBEBIN_EMBREE_MAJOR})
 
 # PCL's own CMake package pulls in VTK, Qt and MPI through its visualization parts; the parts used here need none
-# of them, so they are found by pkg-config-free names and headers alone. Its I/O library needs them all, a tenth of a
-# second for every program to load: tests alone use it, as another reader and writer.
+# of them, so they are found by pkg-config-free names and headers alone.
 find_path(PCL_INCLUDE_DIR pcl/pcl_config.h PATH_SUFFIXES pcl-1.13 pcl-1.14 pcl-1.15 pcl-1.12 REQUIRED)
-add_library(tubebin_pcl INTERFACE)
-target_include_directories(tubebin_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIR})
-target_link_libraries(tubebin_pcl INTERFACE Eigen3::Eigen)
-function(tubebin_link_pcl target)
-  foreach(part ${ARGN})
-    find_library(PCL_${part}_LIBRARY pcl_${part} REQUIRED)
-    target_link_libraries(${target} INTERFACE ${PCL_${part}_LIBRARY})
-  endforeach()
-endfunction()
-tubebin_link_pcl(tubebin_pcl common octree kdtree search features filters sample_consensus segmentation)
-add_library(tubebin::pcl ALIAS tubebin_pcl)
-add_library(tubebin_pcl_io INTERFACE)
-target_link_libraries(tubebin_pcl_io INTERFACE tubebin_pcl)
-tubebin_link_pcl(tubebin_pcl_io io io_ply)
-add_library(tubebin::pcl_io ALIAS tubebin_pcl_io)
-
-# LZF, PCD's compression
-pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)
+add_library(tubebin::pcl INTERFACE IMPORTED)
+target_include_directories(tubebin::pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIR})
+target_link_libraries(tubebin::pcl INTERFACE Eigen3::Eigen)
+foreach(part IN ITEMS common octree kdtree search features filters sample_consensus segmentation)
+  find_library(PCL_${part}_LIBRARY pcl_${part} REQUIRED)
+  target_link_libraries(tubebin::pcl INTERFACE ${PCL_${part}_LIBRARY})
+endforeach()

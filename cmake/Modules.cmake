@@ -12,10 +12,14 @@ function(tubebin_module name)
     list(FILTER sources EXCLUDE REGEX "/opengl/")
   endif()
   add_library(tubebin_${name} STATIC ${sources})
-  target_include_directories(tubebin_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src)
-  target_link_libraries(tubebin_${name} PUBLIC ${MODULE_PUBLIC} PRIVATE tubebin_flags ${MODULE_PRIVATE})
+  target_compile_features(tubebin_${name} PUBLIC cxx_std_20)
+  target_include_directories(tubebin_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                             PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(tubebin_${name} PUBLIC ${MODULE_PUBLIC} PRIVATE $<BUILD_INTERFACE:tubebin_flags> ${MODULE_PRIVATE})
   target_compile_definitions(tubebin_${name} PRIVATE TUBEBIN_VERSION="${PROJECT_VERSION}")
   add_library(tubebin::${name} ALIAS tubebin_${name})
+  set_target_properties(tubebin_${name} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY TUBEBIN_MODULES tubebin_${name})
 endfunction()
 
 # tubebin_app(NAME LIBRARIES...): the program NAME in <build>/bin/ from apps/NAME.cpp. Of the shared libraries behind the
@@ -25,6 +29,7 @@ function(tubebin_app name)
   target_link_libraries(${name} PRIVATE tubebin_flags ${ARGN} CLI11::CLI11)
   target_link_options(${name} PRIVATE LINKER:--as-needed)
   target_compile_definitions(${name} PRIVATE TUBEBIN_VERSION="${PROJECT_VERSION}")
+  set_property(GLOBAL APPEND PROPERTY TUBEBIN_APPS ${name})
 endfunction()
 
 # tubebin_embed(MODULE FILE NAME): the file's text as `extern const char* const NAME` in the module.

@@ -10,11 +10,11 @@ scripts/install_dependencies.sh clang-format-14 clang-tidy-14
 cpp_files() { find "$@" \( -name '*.cpp' -o -name '*.hpp' \) -print0 | sort -z; }
 
 if [ "${1:-}" = --format ]; then
-  cpp_files apps bench include src tests | xargs -0 clang-format-14 -i
+  cpp_files apps bench examples include src tests | xargs -0 clang-format-14 -i
   exit 0
 fi
 
-cpp_files apps bench include src tests | xargs -0 clang-format-14 --dry-run --Werror ||
+cpp_files apps bench examples include src tests | xargs -0 clang-format-14 --dry-run --Werror ||
   { echo "Formatting differs; scripts/lint.sh --format writes it." >&2; exit 1; }
 
 # clang-tidy spends its time on the headers, so it gets a few units of many files each: a fifth of the work. Where a name
