@@ -2,7 +2,7 @@
 # Installs what is missing, builds with warnings as errors, and runs the tests.
 # Usage: scripts/test.sh [PRESET [KIND...]]
 #   PRESET  release, debug, ci, asan or tsan; default: release
-#   KIND    unit, scene, fault, browser or bench: builds and runs these alone; default: all
+#   KIND    unit, scene, fault, browser, bench or package: builds and runs these alone; default: all
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1:-release}
