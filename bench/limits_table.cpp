@@ -1,11 +1,9 @@
 // How near each stage of a scene comes to what the library or the machine beneath it can do:
 // limits_table CONFIG.yaml FOLDER CASES TUBES. FOLDER is new and lies on the disk that is to be measured. Prints Markdown.
 //
-//   drop   contacts times iterations a second, beside those of ODE's quickstep alone, in the same drops
 //   scan   rays a second, beside Embree's on the scene's triangles (64 facets around a tube), the same rays
 //   write  bytes a second from the cloud in memory to the disk, beside writing and syncing as many bytes to a file
 #include <fcntl.h>
-#include <ode/ode.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -30,9 +28,6 @@ struct Stage {
   double seconds = 0.0;
   double limit_seconds = 0.0;
 };
-
-Stage drop_stage;
-double contacts_of_step = 0.0;
 
 /// Embree's own job: the first triangle of each ray, eight rays at a time.
 class TriangleScene {
@@ -134,27 +129,6 @@ void print_row(const char* name, const char* unit, double scale, const Stage& st
 
 }  // namespace
 
-// The linker puts these in the place of ODE's (CMakeLists.txt).
-extern "C" {
-int __real_dWorldQuickStep(dWorldID world, dReal step);
-int __wrap_dWorldQuickStep(dWorldID world, dReal step);
-dJointID __real_dJointCreateContact(dWorldID world, dJointGroupID group, const dContact* contact);
-dJointID __wrap_dJointCreateContact(dWorldID world, dJointGroupID group, const dContact* contact);
-
-int __wrap_dWorldQuickStep(dWorldID world, dReal step) {
-  drop_stage.work += contacts_of_step * dWorldGetQuickStepNumIterations(world);
-  contacts_of_step = 0.0;
-  const double start = now();
-  const int result = __real_dWorldQuickStep(world, step);
-  drop_stage.limit_seconds += now() - start;
-  return result;
-}
-dJointID __wrap_dJointCreateContact(dWorldID world, dJointGroupID group, const dContact* contact) {
-  ++contacts_of_step;
-  return __real_dJointCreateContact(world, group, contact);
-}
-}
-
 int main(int argc, char** argv) try {
   if (argc != 5) throw_config_error("usage: limits_table CONFIG.yaml FOLDER CASES TUBES");
   const dataset::DatasetConfig config = dataset::load_config(argv[1]);
@@ -166,13 +140,11 @@ int main(int argc, char** argv) try {
     for (int attempt = 0; attempt == 0 || !scene.failure.empty(); ++attempt) {
       if (attempt == config.attempts_max) throw_io_error("{}: {}", id.name(), scene.failure_detail);
       scene = dataset::generate_scene(config, id, attempt);
-      drop_stage.seconds += scene.seconds["drop"];
     }
     add_scan(scene.content, scene.seconds["scan"], scan_stage);
     add_write(store, argv[2], id.name(), scene.content, write_stage);
   }
   fmt::print("| stage | unit | ours | limit | ours / limit |\n| --- | --- | ---: | ---: | ---: |\n");
-  print_row("drop", "million contacts x iterations of quickstep a second", 1e6, drop_stage);
   print_row("scan", "million rays a second on Embree's triangles", 1e6, scan_stage);
   print_row("write", "MB a second on the disk", 1e6, write_stage);
 } catch (const std::exception& error) {

@@ -16,6 +16,7 @@ using Json = nlohmann::ordered_json;
 Json to_json(const physics::DropFigures& figures) {
   return {{"steps", figures.steps},
           {"simulated_seconds", figures.simulated_seconds},
+          {"redropped", figures.redropped},
           {"deepest_penetration", figures.deepest_penetration},
           {"largest_drift", figures.largest_drift}};
 }
@@ -23,6 +24,7 @@ Json to_json(const physics::DropFigures& figures) {
 physics::DropFigures physics_from(const Json& json) {
   return {.steps = json.at("steps"),
           .simulated_seconds = json.at("simulated_seconds"),
+          .redropped = json.at("redropped"),
           .deepest_penetration = json.at("deepest_penetration"),
           .largest_drift = json.at("largest_drift")};
 }

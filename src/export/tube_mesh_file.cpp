@@ -18,12 +18,21 @@ void append(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-double largest_distance(const std::vector<Eigen::Vector3f>& points) {
-  float squared = 0.0F;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (std::size_t j = i + 1; j < points.size(); ++j)
-      squared = std::max(squared, (points[i] - points[j]).squaredNorm());
-  return std::sqrt(static_cast<double>(squared));
+/// Between any two points. Two are no farther apart than both are from the middle together, so points are taken from the
+/// outside in, until that bound is below the largest distance found.
+double largest_distance(std::vector<Eigen::Vector3f> points) {
+  Eigen::AlignedBox3f bounds;
+  for (const Eigen::Vector3f& point : points) bounds.extend(point);
+  const Eigen::Vector3f middle = bounds.center();
+  const auto reach = [&](const Eigen::Vector3f& point) { return (point - middle).norm(); };
+  std::ranges::sort(points, [&](const auto& a, const auto& b) { return reach(a) > reach(b); });
+  std::vector<float> reaches;
+  for (const Eigen::Vector3f& point : points) reaches.push_back(reach(point) * (1.0F + 1e-6F));  // rounded up
+  float largest = 0.0F;
+  for (std::size_t i = 0; i < points.size() && 2.0F * reaches[i] > largest; ++i)
+    for (std::size_t j = i + 1; j < points.size() && reaches[i] + reaches[j] > largest; ++j)
+      largest = std::max(largest, (points[i] - points[j]).norm());
+  return static_cast<double>(largest);
 }
 
 }  // namespace

@@ -206,6 +206,17 @@ void add_deepest_end_touch(const scene::Box& box, const Piece& piece, const Vec3
   if (deepest > 0.0) out.push_back(*touch_box_with_ball(box, at, 0.0, 0.0));
 }
 
+/// A unit vector across `direction` that hardly turns while the direction sways, other than unitOrthogonal().
+Vec3 steady_orthogonal(const Vec3& direction) {
+  Eigen::Index least = 0;
+  direction.cwiseAbs().minCoeff(&least);
+  return (Vec3::Unit(least) - direction[least] * direction).normalized();
+}
+
+/// A tube that leans by less than this sine stands: its rim points stay where they are, or it would walk on them. The
+/// deepest of all then lies at most 0.0015 radii deeper than the deepest of the eight.
+constexpr double kStandingSine = 0.02;
+
 /// A flat end's rim against a box: the rim point that lies deepest and seven more around, which keep a standing
 /// tube upright.
 void add_rim_touches(const scene::Box& box, const Piece& piece, bool at_a, double depth_min, std::vector<Touch>& out) {
@@ -214,7 +225,8 @@ void add_rim_touches(const scene::Box& box, const Piece& piece, bool at_a, doubl
   const double reach = piece.radius - depth_min;
   if (toward.squaredNorm() > reach * reach) return;
   const Vec3 radial = toward - toward.dot(piece.direction) * piece.direction;
-  const Vec3 u = radial.squaredNorm() > 1e-16 ? Vec3(radial.normalized()) : piece.direction.unitOrthogonal();
+  const bool stands = radial.squaredNorm() <= kStandingSine * kStandingSine * toward.squaredNorm();
+  const Vec3 u = stands ? steady_orthogonal(piece.direction) : Vec3(radial.normalized());
   const Vec3 v = piece.direction.cross(u);
   constexpr double kDiagonal = std::numbers::sqrt2 / 2.0;
   constexpr double kCircle[][2] = {{1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},

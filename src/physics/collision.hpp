@@ -54,7 +54,8 @@ CollisionTube collision_tube(const scene::PlacedTube& tube);
 /// As collision_tube, into an empty one or into that of the same tube in another pose, then without allocation.
 void update_collision_tube(const scene::PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out);
 
-/// The bin as it collides: bin_boxes() with the ground below the floor, so that nothing falls through.
+/// The bin as it collides: bin_boxes() with the ground below the floor, so that nothing falls through. Walls reach down into
+/// it and overlap at the corners, so that the shortest way out of one never leads into another.
 std::vector<scene::Box> collision_boxes(const scene::Bin& bin);
 
 /// Indices of a piece of one tube and of a piece of another.

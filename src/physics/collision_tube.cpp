@@ -61,7 +61,11 @@ CollisionTube collision_tube(const scene::PlacedTube& tube) {
 std::vector<scene::Box> collision_boxes(const scene::Bin& bin) {
   constexpr double kGroundDepth = 1.0;  // metres; far beyond what a tube covers in a step
   std::vector<scene::Box> boxes = scene::bin_boxes(bin);
-  boxes.front().min().z() -= kGroundDepth;
+  for (scene::Box& box : boxes) box.min().z() -= kGroundDepth;
+  for (const std::size_t wall : {3u, 4u}) {  // at -y and +y, between the others
+    boxes[wall].min().x() -= bin.wall_thickness;
+    boxes[wall].max().x() += bin.wall_thickness;
+  }
   return boxes;
 }
 

@@ -14,11 +14,6 @@ namespace {
 /// Bodies at rest may be this far apart and still count as touching: twice what the contact layer leaves.
 constexpr double kTouchingGap = 0.0002;  // metres
 
-/// A stubborn pile is iterated half as much again and again, up to eight times as much as the fall.
-constexpr double kSolverBoost = 1.5;
-constexpr double kSolverBoostMax = 8.0;
-constexpr double kBoostInterval = 0.5;  // seconds
-
 DropResult failed(DropFailure failure, std::string detail, DropFigures figures = {}) {
   DropResult result;
   result.failure = failure;
@@ -27,62 +22,76 @@ DropResult failed(DropFailure failure, std::string detail, DropFigures figures =
   return result;
 }
 
-/// How steps are taken. Iterations grow where a pile does not come to rest: what still moves or creeps under a solver
-/// that did not converge may stand under one that does.
-class Pace {
+/// One drop while it goes on.
+class Drop {
  public:
-  explicit Pace(const PhysicsOptions& options) : options_(options), next_boost_(options.solver_patience) {}
-
-  /// What creeps once all is slow is mostly the solver's residual.
-  void start_proof(double time) {
-    boost_ *= kSolverBoost;
-    next_boost_ = time + options_.check_time;
-  }
-  void boost_if_late(double time) {
-    if (!have_passed(0.0, next_boost_, time)) return;
-    boost_ *= kSolverBoost;
-    next_boost_ = time + kBoostInterval;
+  Drop(const std::vector<scene::PlacedTube>& spawned, const scene::Bin& bin, const PhysicsOptions& options,
+       Random& random)
+      : bin_(bin), options_(options), random_(random), world_(spawned, bin, options), proof_(options) {
+    const double top = top_of(spawned);
+    if (options.spill == Spill::guard) world_.raise_guards(top);
+    wait_for_a_fall_from(top);
   }
 
-  StepSettings settings(bool all_slow) const {
-    StepSettings settings = step_settings(options_);
-    settings.solver_iterations =
-        static_cast<int>(std::lround(std::min(boost_, kSolverBoostMax) * options_.solver_iterations));
-    if (all_slow) settings.time_step = options_.rest_time_step;
-    if (all_slow && options_.warm_start > 0.0) settings.warm_start = options_.rest_warm_start;
-    // What rolls on and on may do so on the share of the last step's forces: friction and rolling resistance lag.
-    if (boost_ >= kSolverBoostMax) settings.warm_start = 0.0;
-    return settings;
+  /// Steps until the pile is proven to be at rest. Why it is not, else.
+  DropFailure settle() {
+    while (!proof_.is_complete(time_)) {
+      if (time_ >= deadline_) return proof_.has_started() ? DropFailure::drift : DropFailure::unsettled;
+      if (const auto tube = find_outside(world_, bin_); tube && !drop_again(*tube)) return DropFailure::outside;
+      step();
+    }
+    figures_.largest_drift = proof_.drift();
+    return DropFailure::none;
   }
+
+  const RigidWorld& world() const { return world_; }
+  const DropFigures& figures() const { return figures_; }
 
  private:
-  const PhysicsOptions& options_;
-  double next_boost_;  ///< seconds
-  double boost_ = 1.0;
-};
-
-/// Steps until the pile is proven to be at rest; false at the time limit or when a tube is lost.
-bool settle(RigidWorld& world, const scene::Bin& bin, const PhysicsOptions& options, DropFigures& figures,
-            RestProof& proof) {
-  Pace pace(options);
-  double& time = figures.simulated_seconds;
-  double last_fast = 0.0;  // seconds
-  bool all_slow = false;   // for the rest window
-  while (!proof.is_complete(time)) {
-    if (have_passed(options.time_limit, 0.0, time) || find_outside(world, bin)) return false;
-    pace.boost_if_late(time);
-    const StepSettings settings = pace.settings(all_slow);
-    world.step(settings);
-    ++figures.steps;
-    time += settings.time_step;
-    if (!is_slow(world, options)) last_fast = time;
-    all_slow = have_passed(options.rest_window, last_fast, time);
-    if (all_slow && !proof.has_started()) pace.start_proof(time);
-    if (all_slow || proof.is_under_way()) proof.observe(nodes_in_world(world.tubes()), time, all_slow);
+  void step() {
+    const bool all_slow = have_passed(options_.rest_window, last_fast_, time_);
+    const double time_step = all_slow ? options_.rest_time_step : options_.time_step;
+    world_.step(time_step);
+    ++figures_.steps;
+    time_ = figures_.simulated_seconds += time_step;
+    if (!is_slow(world_, options_)) last_fast_ = time_;
+    const bool may_start = have_passed(options_.rest_window, last_fast_, time_);
+    if (may_start && world_.has_guards()) {
+      world_.remove_guards();
+      last_fast_ = time_;
+    } else if (may_start || proof_.is_under_way()) {
+      proof_.observe(nodes_in_world(world_.tubes()), time_, may_start);
+    }
   }
-  figures.largest_drift = proof.drift();
-  return true;
-}
+
+  /// False where the tube is not to be dropped again, or no longer.
+  bool drop_again(std::size_t tube) {
+    if (options_.spill == Spill::reject || figures_.redropped >= static_cast<int>(world_.size())) return false;
+    ++figures_.redropped;
+    world_.put(tube, spawn_again(tube, world_.tubes(), bin_, options_, random_));
+    wait_for_a_fall_from(top_of({world_.tubes()[tube]}));
+    last_fast_ = time_;
+    return true;
+  }
+
+  static double top_of(const std::vector<scene::PlacedTube>& tubes) {
+    double top = 0.0;
+    for (const scene::PlacedTube& tube : tubes) top = std::max(top, collision_tube(tube).bounds.max().z());
+    return top;
+  }
+
+  void wait_for_a_fall_from(double height) { deadline_ = time_ + options_.time_limit + height / options_.speed_max; }
+
+  const scene::Bin& bin_;
+  const PhysicsOptions& options_;
+  Random& random_;
+  RigidWorld world_;
+  RestProof proof_;
+  DropFigures figures_;
+  double time_ = 0.0;  ///< seconds, as the others
+  double last_fast_ = 0.0;
+  double deadline_ = 0.0;
+};
 
 DropResult judge(const RigidWorld& world, const scene::Bin& bin, const PhysicsOptions& options, DropFigures figures) {
   DropResult result;
@@ -105,16 +114,16 @@ DropResult drop_tubes(const std::vector<tube::Tube>& tubes, const scene::Bin& bi
   const auto spawned = spawn(tubes, bin, options, random);
   if (!spawned) return failed(DropFailure::spawn, "a tube fits between the walls in no orientation");
 
-  RigidWorld world(*spawned, bin, options, random.bits());
-  DropFigures figures;
-  RestProof proof(options);
-  const bool settled = settle(world, bin, options, figures, proof);
-  if (const auto tube = find_outside(world, bin))
-    return failed(DropFailure::outside, fmt::format("tube {} left the bin", *tube + 1), figures);
-  if (!settled)
-    return failed(proof.has_started() ? DropFailure::drift : DropFailure::unsettled,
-                  fmt::format("still moving after {} s", options.time_limit), figures);
-  return judge(world, bin, options, figures);
+  Drop drop(*spawned, bin, options, random);
+  switch (const DropFailure failure = drop.settle()) {
+    case DropFailure::none:
+      return judge(drop.world(), bin, options, drop.figures());
+    case DropFailure::outside:
+      return failed(failure, fmt::format("tube {} left the bin", *find_outside(drop.world(), bin) + 1), drop.figures());
+    default:
+      return failed(failure, fmt::format("still moving after {:.1f} s", drop.figures().simulated_seconds),
+                    drop.figures());
+  }
 }
 
 }  // namespace tubebin::physics

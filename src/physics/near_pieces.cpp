@@ -20,22 +20,28 @@ bool have_moved(const std::vector<Vec3>& nodes, const std::vector<Vec3>& when_li
 
 }  // namespace
 
-void NearPieces::follow(const std::vector<CollisionTube>& tubes) {
+void NearPieces::follow(const std::vector<CollisionTube>& tubes, const std::vector<double>& margins) {
   const bool is_new = nodes_when_listed_.empty();
   nodes_when_listed_.resize(tubes.size());
-  pairs_.resize(tubes.size() * (tubes.size() - 1) / 2);
+  near_.resize(tubes.size());
   std::vector<bool> moved(tubes.size());
-  for (std::size_t i = 0; i < tubes.size(); ++i) {
-    moved[i] = is_new || have_moved(tubes[i].nodes, nodes_when_listed_[i]);
-    if (moved[i]) nodes_when_listed_[i] = tubes[i].nodes;
-  }
-  for (std::size_t second = 1; second < tubes.size(); ++second)
-    for (std::size_t first = 0; first < second; ++first) {
-      if (!moved[first] && !moved[second]) continue;
-      std::vector<PiecePair>& pairs = pairs_[second * (second - 1) / 2 + first];
-      pairs.clear();
-      find_near_pieces(tubes[first], tubes[second], kReach, pairs);
+  std::vector<std::size_t> all_before, moved_before;  // of the tubes before `second`
+  for (std::size_t second = 0; second < tubes.size(); ++second) {
+    const std::vector<Vec3>& nodes = tubes[second].nodes;
+    moved[second] = is_new || have_moved(nodes, nodes_when_listed_[second]);
+    std::vector<NearTube>& near = near_[second];
+    std::erase_if(near, [&](const NearTube& other) { return moved[second] || moved[other.first]; });
+    for (const std::size_t first : moved[second] ? all_before : moved_before) {
+      NearTube other{first, {}};
+      find_near_pieces(tubes[first], tubes[second], kReach + std::max(margins[first], margins[second]), other.pieces);
+      if (!other.pieces.empty()) near.push_back(std::move(other));
     }
+    std::sort(near.begin(), near.end(), [](const NearTube& a, const NearTube& b) { return a.first < b.first; });
+    all_before.push_back(second);
+    if (!moved[second]) continue;
+    moved_before.push_back(second);
+    nodes_when_listed_[second] = nodes;
+  }
 }
 
 }  // namespace tubebin::physics

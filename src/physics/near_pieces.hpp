@@ -8,18 +8,23 @@
 
 namespace tubebin::physics {
 
+/// A tube near another one, and every pair of their pieces that touch, and some more.
+struct NearTube {
+  std::size_t first = 0;
+  std::vector<PiecePair> pieces;
+};
+
 class NearPieces {
  public:
-  /// Brings the lists up to date with where the tubes are.
-  void follow(const std::vector<CollisionTube>& tubes);
+  /// Brings the lists up to date with where the tubes are, each of which has a touch where it comes within its margin
+  /// (metres): beyond kMovementMax only where it moves as far in a step.
+  void follow(const std::vector<CollisionTube>& tubes, const std::vector<double>& margins);
 
-  /// Of tubes `first` < `second`: every pair of pieces that touch, and some more.
-  const std::vector<PiecePair>& pairs(std::size_t first, std::size_t second) const {
-    return pairs_[second * (second - 1) / 2 + first];
-  }
+  /// The tubes before `second` that may touch it, in order.
+  const std::vector<NearTube>& near(std::size_t second) const { return near_[second]; }
 
  private:
-  std::vector<std::vector<PiecePair>> pairs_;
+  std::vector<std::vector<NearTube>> near_;           ///< of each tube
   std::vector<std::vector<Vec3>> nodes_when_listed_;  ///< of each tube
 };
 

@@ -7,18 +7,12 @@ void describe(Fields& fields, PhysicsOptions& o) {
   fields.number("time_step", o.time_step, {1e-5, 0.05}, "s", "of the simulation; smaller is slower and more exact");
   fields.number("rest_time_step", o.rest_time_step, {1e-5, 0.05}, "s",
                 "the same once all tubes have been slow for rest_window, while it is proven that nothing moves");
-  fields.integer(
-      "solver_iterations", o.solver_iterations, {1, 10000}, "",
-      "of ODE's quickstep; half as many more once all is slow, since what creeps then is mostly its residual");
-  fields.number("solver_over_relaxation", o.solver_over_relaxation, {0.1, 1.9}, "", "quickstep's SOR factor");
-  fields.number("solver_patience", o.solver_patience, {0.0, 10000.0}, "s",
-                "a pile that is not slow after this time is iterated half as much again every half second");
-  fields.number("warm_start", o.warm_start, {0.0, 0.95}, "",
-                "share of a resting contact's force that the next step starts from; 0 starts from none");
-  fields.number("rest_warm_start", o.rest_warm_start, {0.0, 0.99}, "",
-                "the same once all tubes have been slow for rest_window; unused where warm_start is 0");
-  fields.number("warm_start_speed", o.warm_start_speed, {0.0, 10.0}, "m/s",
-                "a contact rests where its surfaces move slower than this against each other");
+  fields.integer("solver_iterations", o.solver_iterations, {1, 10000}, "", "most sweeps over a step's contacts");
+  fields.number("solver_tolerance", o.solver_tolerance, {0.0, 1.0}, "m/s",
+                "a sweep that changes no contact's velocity by as much is a step's last");
+  fields.number("solver_over_relaxation", o.solver_over_relaxation, {0.1, 1.9}, "", "Gauss-Seidel's SOR factor");
+  fields.number("warm_start", o.warm_start, {0.0, 1.0}, "",
+                "share of a lasting contact's force that the next step starts from; 0 starts from none");
   fields.number("contact_erp", o.contact_erp, {0.0, 1.0}, "",
                 "share of an interpenetration that one step corrects (ODE's error reduction parameter)");
   fields.number("contact_cfm", o.contact_cfm, {0.0, 1.0}, "s/kg",
@@ -35,6 +29,10 @@ void describe(Fields& fields, PhysicsOptions& o) {
   fields.number("damping_angular", o.damping_angular, {0.0, 1.0}, "", "share of the angular velocity lost in a step");
   fields.number("speed_max", o.speed_max, {0.01, 1000.0}, "m/s",
                 "highest speed of a falling tube, as tubes that are poured from a low height");
+  fields.choice(
+      "spill", o.spill, {"reject", "guard", "redrop"},
+      "reject: a drop that loses a tube over the walls fails; redrop: the tube is dropped again alone; guard: "
+      "unseen guards stand on the walls while tubes fall, and what leaves the bin later is dropped again alone");
   fields.number("spawn_clearance", o.spawn_clearance, {0.0001, 1.0}, "m",
                 "between spawned tubes, and between them and the bin's rim");
   fields.integer("spawn_tries", o.spawn_tries, {1, 10000}, "",

@@ -34,18 +34,17 @@ dMass to_ode(const tube::MassProperties& properties) {
 
 }  // namespace
 
-StepSettings step_settings(const PhysicsOptions& options) {
-  return {options.time_step, options.solver_iterations, options.warm_start};
-}
-
 struct RigidWorld::Impl {
   dWorldID world = nullptr;
-  dJointGroupID joints = nullptr;
   PhysicsOptions options;
-  std::vector<scene::Box> bin;
+  scene::Bin bin;
+  std::vector<scene::Box> boxes;  ///< of the bin, with its guards while they stand
+  bool guards_stand = false;
   std::vector<scene::PlacedTube> tubes;  ///< poses are the bodies'
   std::vector<dBodyID> bodies;
-  std::vector<Vec3> centers;  ///< of mass, tube frame
+  std::vector<double> inverse_masses;             ///< 1/kg
+  std::vector<Eigen::Matrix3d> inverse_inertias;  ///< about the centre of mass, tube frame
+  std::vector<Vec3> centers;                      ///< of mass, tube frame
   std::vector<std::vector<int>> degrees;
   std::vector<CollisionTube> shapes;
   NearPieces near_pieces;
@@ -57,15 +56,21 @@ struct RigidWorld::Impl {
     const dMass mass = to_ode(properties);
     const dBodyID body = dBodyCreate(world);
     dBodySetMass(body, &mass);
-    const Vec3 center = tube.world_from_tube * properties.center;
-    dBodySetPosition(body, center.x(), center.y(), center.z());
-    const Quat q(tube.world_from_tube.linear());
-    const dQuaternion rotation = {q.w(), q.x(), q.y(), q.z()};
-    dBodySetQuaternion(body, rotation);
+    set_pose(body, tube.world_from_tube, properties.center);
     bodies.push_back(body);
+    inverse_masses.push_back(1.0 / properties.mass);
+    inverse_inertias.push_back(properties.inertia.inverse());
     centers.push_back(properties.center);
     degrees.push_back(tube.tube.node_degrees());
     shapes.push_back(collision_tube(tube));
+  }
+
+  static void set_pose(dBodyID body, const Pose& world_from_tube, const Vec3& center_in_tube) {
+    const Vec3 center = world_from_tube * center_in_tube;
+    dBodySetPosition(body, center.x(), center.y(), center.z());
+    const Quat q(world_from_tube.linear());
+    const dQuaternion rotation = {q.w(), q.x(), q.y(), q.z()};
+    dBodySetQuaternion(body, rotation);
   }
 
   void read_pose(std::size_t i) {
@@ -74,92 +79,74 @@ struct RigidWorld::Impl {
     tubes[i].world_from_tube = make_pose(rotation, to_vec(dBodyGetPosition(bodies[i])) - rotation * centers[i]);
   }
 
-  void find_contacts() {
+  /// How far a tube's surface may come in a step, metres. What is so near counts as a contact with a gap, so that nothing
+  /// runs into something within the step; nor does a contact end that opens by no more than the contact layer.
+  double margin_of(std::size_t i, double time_step) const {
+    const Vec3 center = to_vec(dBodyGetPosition(bodies[i]));
+    const Vec3 reach = (shapes[i].bounds.max() - center).cwiseMax(center - shapes[i].bounds.min());
+    const double speed =
+        to_vec(dBodyGetLinearVel(bodies[i])).norm() + to_vec(dBodyGetAngularVel(bodies[i])).norm() * reach.norm();
+    return std::max(options.contact_layer, time_step * std::min(speed, 2.0 * options.speed_max));
+  }
+
+  void find_contacts(double time_step) {
     const auto append = [&](std::size_t first, std::size_t second) {
       for (const Touch& touch : touches) contacts.push_back({.first = first, .second = second, .touch = touch});
       touches.clear();
     };
-    near_pieces.follow(shapes);
+    std::vector<double> margins;
+    for (std::size_t i = 0; i < shapes.size(); ++i) margins.push_back(margin_of(i, time_step));
+    near_pieces.follow(shapes, margins);
     for (std::size_t j = 0; j < shapes.size(); ++j) {
-      collide(bin, shapes[j], 0.0, touches);
+      collide(boxes, shapes[j], -margins[j], touches);
       append(kBinBody, j);
-      for (std::size_t i = 0; i < j; ++i) {
-        collide(shapes[i], shapes[j], near_pieces.pairs(i, j), 0.0, touches);
-        append(i, j);
+      for (const NearTube& near : near_pieces.near(j)) {
+        collide(shapes[near.first], shapes[j], near.pieces, -std::max(margins[near.first], margins[j]), touches);
+        append(near.first, j);
       }
     }
+    for (StepContact& contact : contacts) contact.friction = friction_of(contact);
   }
 
-  void add_joint(const StepContact& in, dJointFeedback& feedback) {
-    dContact contact{};
-    contact.surface.mode = dContactApprox1 | dContactRolling | dContactSoftERP | dContactSoftCFM;
-    contact.surface.rho = options.rolling_resistance;
-    contact.surface.mu = in.first == kBinBody ? options.friction_bin : options.friction_tube;
-    contact.surface.soft_erp = options.contact_erp;
-    contact.surface.soft_cfm = options.contact_cfm;
-    contact.geom.depth = in.touch.depth;
-    for (int axis = 0; axis < 3; ++axis) {
-      contact.geom.pos[axis] = in.touch.position[axis];
-      contact.geom.normal[axis] = in.touch.normal[axis];  // points into ODE's first body
-    }
-    const dJointID joint = dJointCreateContact(world, joints, &contact);
-    dJointAttach(joint, bodies[in.second], in.first == kBinBody ? nullptr : bodies[in.first]);
-    dJointSetFeedback(joint, &feedback);
+  /// The guards are smooth: nothing clings to them.
+  double friction_of(const StepContact& contact) const {
+    if (contact.first != kBinBody) return options.friction_tube;
+    return guards_stand && contact.touch.position.z() > bin.height + options.penetration_max ? 0.0
+                                                                                             : options.friction_bin;
   }
 
-  Vec3 velocity_at(std::size_t i, const Vec3& point) const {
-    const Vec3 arm = point - to_vec(dBodyGetPosition(bodies[i]));
-    return to_vec(dBodyGetLinearVel(bodies[i])) + turn_velocity(i).cross(arm);
-  }
-  Vec3 turn_velocity(std::size_t i) const { return to_vec(dBodyGetAngularVel(bodies[i])); }
-
-  /// Whether the two surfaces hardly move against each other, nor does either tube spin in place.
-  bool is_resting(const StepContact& contact) const {
-    const Vec3& point = contact.touch.position;
-    Vec3 velocity = velocity_at(contact.second, point);
-    double turn_rate = turn_velocity(contact.second).norm();
-    if (contact.first != kBinBody) {
-      velocity -= velocity_at(contact.first, point);
-      turn_rate = std::max(turn_rate, turn_velocity(contact.first).norm());
-    }
-    return std::max(velocity.norm(), turn_rate * shapes[contact.second].radius) < options.warm_start_speed;
+  /// The tube at the step's end, were there no contacts.
+  SolverBody unhindered(std::size_t i, double time_step) const {
+    const Eigen::Matrix3d rotation = tubes[i].world_from_tube.linear();
+    return {.velocity = to_vec(dBodyGetLinearVel(bodies[i])) - time_step * options.gravity * Vec3::UnitZ(),
+            .turn_velocity = to_vec(dBodyGetAngularVel(bodies[i])),
+            .center = to_vec(dBodyGetPosition(bodies[i])),
+            .inverse_mass = inverse_masses[i],
+            .inverse_inertia = rotation * inverse_inertias[i] * rotation.transpose()};
   }
 
-  void apply(const ContactLoad& load, const StepContact& contact) const {
-    const auto add = [this](std::size_t i, const Vec3& force, const Vec3& torque) {
-      dBodyAddForce(bodies[i], force.x(), force.y(), force.z());
+  void apply(const StepContact& contact) const {
+    const auto add = [&](std::size_t i, const Vec3& force, const Vec3& torque) {
+      const Vec3& at = contact.touch.position;
+      dBodyAddForceAtPos(bodies[i], force.x(), force.y(), force.z(), at.x(), at.y(), at.z());
       dBodyAddTorque(bodies[i], torque.x(), torque.y(), torque.z());
     };
-    add(contact.second, load.force_on_second, load.torque_on_second);
-    if (contact.first != kBinBody) add(contact.first, -load.force_on_second, load.torque_on_first);
+    add(contact.second, contact.force, contact.resistance);
+    if (contact.first != kBinBody) add(contact.first, -contact.force, -contact.resistance);
   }
 
-  /// Finds the contacts, solves the step, and leaves in the contacts what they bore.
-  void solve(const StepSettings& settings) {
+  /// Finds the contacts and what they bear, and lets ODE move the bodies under those forces.
+  void solve(double time_step) {
     const std::size_t room = 2 * contacts.size();
-    WarmStart warm_start(std::exchange(contacts, {}));
+    const std::vector<StepContact> before = std::exchange(contacts, {});
     contacts.reserve(room);
-    find_contacts();
-    std::vector<dJointFeedback> feedback(contacts.size());
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      StepContact& contact = contacts[i];
-      add_joint(contact, feedback[i]);
-      if (settings.warm_start == 0.0) continue;
-      const double reach = 0.5 * shapes[contact.second].radius;
-      contact.load = warm_start.start(contact, settings.warm_start, reach, is_resting(contact));
-      apply(contact.load, contact);
-    }
-    dWorldSetQuickStepNumIterations(world, settings.solver_iterations);
-    dWorldQuickStep(world, settings.time_step);
-    dJointGroupEmpty(joints);
-    for (std::size_t i = 0; i < contacts.size(); ++i) add_solved(feedback[i], contacts[i]);
-  }
-
-  static void add_solved(const dJointFeedback& solved, StepContact& contact) {
-    contact.load.force_on_second += to_vec(solved.f1);
-    contact.load.torque_on_second += to_vec(solved.t1);
-    if (contact.first != kBinBody) contact.load.torque_on_first += to_vec(solved.t2);
-    contact.normal_force = contact.load.force_on_second.dot(contact.touch.normal);
+    find_contacts(time_step);
+    warm_start(before, options.warm_start, shapes, contacts);
+    std::vector<SolverBody> unhindered_bodies;
+    for (std::size_t i = 0; i < bodies.size(); ++i) unhindered_bodies.push_back(unhindered(i, time_step));
+    solve_contacts(options, time_step, std::move(unhindered_bodies), contacts);
+    for (const StepContact& contact : contacts) apply(contact);
+    dWorldQuickStep(world, time_step);
   }
 
   void limit_speed(dBodyID body) const {
@@ -172,35 +159,49 @@ struct RigidWorld::Impl {
 };
 
 RigidWorld::RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin,
-                       const PhysicsOptions& options, std::uint64_t seed)
+                       const PhysicsOptions& options)
     : impl_(std::make_unique<Impl>()) {
   init_ode();
-  dRandSetSeed(static_cast<unsigned long>(seed & 0xffffffffu));  // quickstep shuffles its constraints with it
   impl_->options = options;
-  impl_->bin = collision_boxes(bin);
+  impl_->bin = bin;
+  impl_->boxes = collision_boxes(bin);
   impl_->tubes = tubes;
   impl_->world = dWorldCreate();
-  impl_->joints = dJointGroupCreate(0);
   dWorldSetGravity(impl_->world, 0, 0, -options.gravity);
-  dWorldSetQuickStepW(impl_->world, options.solver_over_relaxation);
-  dWorldSetContactMaxCorrectingVel(impl_->world, options.correcting_speed_max);
-  dWorldSetContactSurfaceLayer(impl_->world, options.contact_layer);
   dWorldSetDamping(impl_->world, options.damping_linear, options.damping_angular);
   for (const scene::PlacedTube& tube : tubes) impl_->add_body(tube);
 }
 
-RigidWorld::~RigidWorld() {
-  dJointGroupDestroy(impl_->joints);
-  dWorldDestroy(impl_->world);
-}
+RigidWorld::~RigidWorld() { dWorldDestroy(impl_->world); }
 
-void RigidWorld::step(const StepSettings& settings) {
-  impl_->solve(settings);
+void RigidWorld::step(double time_step) {
+  impl_->solve(time_step);
   for (std::size_t i = 0; i < impl_->bodies.size(); ++i) {
     impl_->limit_speed(impl_->bodies[i]);
     impl_->read_pose(i);
     update_collision_tube(impl_->tubes[i], impl_->degrees[i], impl_->shapes[i]);
   }
+}
+
+void RigidWorld::raise_guards(double height) {
+  scene::Bin guarded = impl_->bin;
+  guarded.height = std::max(guarded.height, height);
+  impl_->boxes = collision_boxes(guarded);
+  impl_->guards_stand = true;
+}
+
+void RigidWorld::remove_guards() {
+  impl_->boxes = collision_boxes(impl_->bin);
+  impl_->guards_stand = false;
+}
+bool RigidWorld::has_guards() const { return impl_->guards_stand; }
+
+void RigidWorld::put(std::size_t tube, const Pose& world_from_tube) {
+  impl_->tubes[tube].world_from_tube = world_from_tube;
+  impl_->set_pose(impl_->bodies[tube], world_from_tube, impl_->centers[tube]);
+  dBodySetLinearVel(impl_->bodies[tube], 0, 0, 0);
+  dBodySetAngularVel(impl_->bodies[tube], 0, 0, 0);
+  update_collision_tube(impl_->tubes[tube], impl_->degrees[tube], impl_->shapes[tube]);
 }
 
 const std::vector<scene::PlacedTube>& RigidWorld::tubes() const { return impl_->tubes; }

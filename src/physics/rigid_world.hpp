@@ -1,4 +1,4 @@
-/// ODE, with the tubes as rigid bodies and the bin standing still.
+/// ODE with the tubes as rigid bodies, which move under the forces of our contacts; the bin stands still.
 #pragma once
 
 #include <memory>
@@ -9,24 +9,21 @@
 
 namespace tubebin::physics {
 
-/// How one step is taken.
-struct StepSettings {
-  double time_step = 0.0;     ///< seconds
-  int solver_iterations = 0;  ///< of quickstep
-  double warm_start = 0.0;    ///< share of a resting contact's force that the step starts from
-};
-/// Those of tubes that move.
-StepSettings step_settings(const PhysicsOptions& options);
-
 class RigidWorld {
  public:
-  RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin, const PhysicsOptions& options,
-             std::uint64_t seed);
+  RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin, const PhysicsOptions& options);
   ~RigidWorld();
   RigidWorld(const RigidWorld&) = delete;
   RigidWorld& operator=(const RigidWorld&) = delete;
 
-  void step(const StepSettings& settings);
+  void step(double time_step);  ///< seconds
+
+  /// Walls that nobody sees, smooth, on the bin's walls up to `height` (metres): what falls can't leave the bin.
+  void raise_guards(double height);
+  void remove_guards();
+  bool has_guards() const;
+  /// Moves a tube to where it is to fall from.
+  void put(std::size_t tube, const Pose& world_from_tube);
 
   const std::vector<scene::PlacedTube>& tubes() const;
   /// World pose of one tube's frame.

@@ -66,37 +66,50 @@ std::optional<std::pair<CollisionTube, double>> raised_until_free(const Collisio
   return std::nullopt;
 }
 
+/// Of several random places the lowest free one above the rim.
+Pose lowest_free_pose(const tube::Tube& tube, const Quat& rotation, const std::vector<CollisionTube>& placed,
+                      const scene::Bin& bin, const PhysicsOptions& options, Random& random) {
+  const double clearance = options.spawn_clearance;
+  const scene::Box bounds = bounds_of(tube, rotation);
+  const Vec3 room =
+      steadiness(bounds, bin) * (0.5 * (Vec3(bin.length, bin.width, 0.0) - bounds.sizes()) - Vec3::Constant(clearance));
+  Pose lowest = Pose::Identity();
+  double top_max = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < options.spawn_tries; ++i) {
+    const double x = random.uniform(-room.x(), room.x());
+    const double y = random.uniform(-room.y(), room.y());
+    const Vec3 start(x - bounds.center().x(), y - bounds.center().y(), bin.height + clearance - bounds.min().z());
+    const CollisionTube shape = collision_tube({tube, make_pose(rotation, start)});
+    const auto raised = raised_until_free(shape, placed, clearance, top_max);
+    if (!raised) continue;
+    top_max = raised->first.bounds.max().z();
+    lowest = make_pose(rotation, start + Vec3(0.0, 0.0, raised->second));
+  }
+  return lowest;
+}
+
 }  // namespace
 
 std::optional<std::vector<scene::PlacedTube>> spawn(const std::vector<tube::Tube>& tubes, const scene::Bin& bin,
                                                     const PhysicsOptions& options, Random& random) {
-  const double clearance = options.spawn_clearance;
   std::vector<scene::PlacedTube> spawned;
   std::vector<CollisionTube> placed;
   for (const tube::Tube& tube : tubes) {
-    const std::optional<Quat> rotation = fitting_rotation(tube, bin, clearance, random);
+    const std::optional<Quat> rotation = fitting_rotation(tube, bin, options.spawn_clearance, random);
     if (!rotation) return std::nullopt;
-    const scene::Box bounds = bounds_of(tube, *rotation);
-    const Vec3 room = steadiness(bounds, bin) *
-                      (0.5 * (Vec3(bin.length, bin.width, 0.0) - bounds.sizes()) - Vec3::Constant(clearance));
-    scene::PlacedTube lowest{tube, Pose::Identity()};
-    CollisionTube lowest_shape;
-    double top_max = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < options.spawn_tries; ++i) {
-      const double x = random.uniform(-room.x(), room.x());
-      const double y = random.uniform(-room.y(), room.y());
-      const Vec3 start(x - bounds.center().x(), y - bounds.center().y(), bin.height + clearance - bounds.min().z());
-      const CollisionTube shape = collision_tube({tube, make_pose(*rotation, start)});
-      auto raised = raised_until_free(shape, placed, clearance, top_max);
-      if (!raised) continue;
-      lowest_shape = std::move(raised->first);
-      top_max = lowest_shape.bounds.max().z();
-      lowest.world_from_tube = make_pose(*rotation, start + Vec3(0.0, 0.0, raised->second));
-    }
-    spawned.push_back(lowest);
-    placed.push_back(lowest_shape);
+    spawned.push_back({tube, lowest_free_pose(tube, *rotation, placed, bin, options, random)});
+    placed.push_back(collision_tube(spawned.back()));
   }
   return spawned;
+}
+
+Pose spawn_again(std::size_t tube, const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin,
+                 const PhysicsOptions& options, Random& random) {
+  std::vector<CollisionTube> others;
+  for (std::size_t i = 0; i < tubes.size(); ++i)
+    if (i != tube) others.push_back(collision_tube(tubes[i]));
+  const std::optional<Quat> rotation = fitting_rotation(tubes[tube].tube, bin, options.spawn_clearance, random);
+  return lowest_free_pose(tubes[tube].tube, *rotation, others, bin, options, random);
 }
 
 }  // namespace tubebin::physics

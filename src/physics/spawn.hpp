@@ -15,4 +15,8 @@ namespace tubebin::physics {
 std::optional<std::vector<scene::PlacedTube>> spawn(const std::vector<tube::Tube>& tubes, const scene::Bin& bin,
                                                     const PhysicsOptions& options, Random& random);
 
+/// A new start pose for one tube: above the rim, and where it does not meet the others.
+Pose spawn_again(std::size_t tube, const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin,
+                 const PhysicsOptions& options, Random& random);
+
 }  // namespace tubebin::physics

@@ -1,6 +1,5 @@
 #include "physics/warm_start.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace tubebin::physics {
@@ -9,30 +8,28 @@ namespace {
 /// In the order of contacts; the bin comes before all tubes.
 std::pair<std::size_t, std::size_t> bodies(const StepContact& contact) { return {contact.second, contact.first + 1}; }
 
-}  // namespace
-
-const StepContact* WarmStart::take(const StepContact& contact, double reach) {
+bool is_same_spot(const Touch& a, const Touch& b, double reach) {
   constexpr double kSameDirection = 0.9;  // cosine
-  while (begin_ < before_.size() && bodies(before_[begin_]) < bodies(contact)) ++begin_;
-  for (std::size_t i = begin_; i < before_.size() && bodies(before_[i]) == bodies(contact); ++i) {
-    const StepContact& old = before_[i];
-    if (taken_[i]) continue;
-    if ((old.touch.position - contact.touch.position).squaredNorm() > reach * reach) continue;
-    if (old.touch.normal.dot(contact.touch.normal) < kSameDirection) continue;
-    taken_[i] = true;
-    return &old;
-  }
-  return nullptr;
+  return (a.position - b.position).squaredNorm() <= reach * reach && a.normal.dot(b.normal) >= kSameDirection;
 }
 
-ContactLoad WarmStart::start(StepContact& contact, double share, double reach, bool resting) {
-  const StepContact* old = take(contact, reach);
-  if (!old) return {};
-  contact.normal_force_before = old->normal_force;
-  if (!resting || old->normal_force <= 0.0) return {};
-  const double lasting = std::clamp(old->normal_force_before / old->normal_force, 0.0, 1.0);
-  const double scale = share * lasting;
-  return {scale * old->load.force_on_second, scale * old->load.torque_on_first, scale * old->load.torque_on_second};
+}  // namespace
+
+void warm_start(const std::vector<StepContact>& before, double share, const std::vector<CollisionTube>& tubes,
+                std::vector<StepContact>& contacts) {
+  std::vector<bool> taken(before.size(), false);
+  std::size_t begin = 0;  // of those that are not of bodies before this contact's
+  for (StepContact& contact : contacts) {
+    const double reach = 0.5 * tubes[contact.second].radius;
+    while (begin < before.size() && bodies(before[begin]) < bodies(contact)) ++begin;
+    for (std::size_t i = begin; i < before.size() && bodies(before[i]) == bodies(contact); ++i) {
+      if (taken[i] || !is_same_spot(before[i].touch, contact.touch, reach)) continue;
+      taken[i] = true;
+      contact.force = share * before[i].force;
+      contact.resistance = share * before[i].resistance;
+      break;
+    }
+  }
 }
 
 }  // namespace tubebin::physics

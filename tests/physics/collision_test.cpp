@@ -233,6 +233,19 @@ TEST(Collision, AWallsEdgeThatCutsIntoARimTouchesIt) {
   }
 }
 
+TEST(Collision, AnEndThatSinksIntoTheWallAtTheFloorIsPushedUpAndInside) {
+  const scene::Bin bin;
+  const double height = 0.0125 - 0.001;  // its lowest rim point is below the floor and within the wall
+  const scene::PlacedTube tube = straight({0, 0, height}, {0, 0.5 * bin.width + 0.003, height});
+  std::vector<Touch> touches;
+  collide(collision_boxes(bin), collision_tube(tube), 0.0, touches);
+  ASSERT_FALSE(touches.empty());
+  for (const Touch& touch : touches) {
+    EXPECT_GT(touch.normal.z(), -1e-9);
+    EXPECT_LT(touch.normal.y(), 1e-9);
+  }
+}
+
 TEST(Collision, ATubeOnTheWallsRimIsHeldByItsEdge) {
   const scene::Bin bin;
   const double top = bin.height + 0.0125 - 0.0001;

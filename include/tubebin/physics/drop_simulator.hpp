@@ -10,17 +10,22 @@
 
 namespace tubebin::physics {
 
+/// Tubes that fall out of the bin.
+enum class Spill {
+  reject,  ///< the drop fails, as in the paper
+  guard,   ///< guards on the walls hold them while they fall; what falls out once these are gone is dropped again alone
+  redrop   ///< they are dropped again alone
+};
+
 /// Physics settings; the defaults were measured (docs/physics.md).
 struct PhysicsOptions {
   double gravity = 9.81;                ///< m/s^2
   double time_step = 0.005;             ///< seconds
   double rest_time_step = 0.010;        ///< seconds; once all tubes have been slow for rest_window
-  int solver_iterations = 12;           ///< of ODE's quickstep; half as many more once all is slow
-  double solver_over_relaxation = 1.6;  ///< SOR factor of quickstep
-  double solver_patience = 4.0;         ///< seconds; what takes longer to come to rest is iterated more and more
-  double warm_start = 0.8;              ///< share of a resting contact's force that the next step starts from
-  double rest_warm_start = 0.98;        ///< likewise, once all tubes have been slow for rest_window
-  double warm_start_speed = 0.05;       ///< m/s; bodies that move faster against each other are not at rest
+  int solver_iterations = 20;           ///< most sweeps over a step's contacts
+  double solver_tolerance = 0.001;      ///< m/s; a sweep that changes no contact's velocity by as much is the last
+  double solver_over_relaxation = 1.0;  ///< SOR factor of Gauss-Seidel
+  double warm_start = 1.0;              ///< share of a lasting contact's force that the next step starts from
   double contact_erp = 0.2;             ///< share of an interpenetration that one step corrects
   double contact_cfm = 1e-5;            ///< softness of a contact, s/kg
   double contact_layer = 0.0001;        ///< metres of interpenetration left alone, so that contacts persist
@@ -31,6 +36,7 @@ struct PhysicsOptions {
   double damping_linear = 0.002;        ///< share of the linear velocity lost in a step
   double damping_angular = 0.01;        ///< share of the angular velocity lost in a step
   double speed_max = 2.5;               ///< m/s
+  Spill spill = Spill::redrop;          ///< what happens to tubes that fall out of the bin
   double spawn_clearance = 0.005;       ///< metres between spawned tubes, and between them and the rim's height
   int spawn_tries = 16;                 ///< free places looked at for each tube, of which the lowest is taken
   double rest_speed = 0.01;             ///< m/s
@@ -64,6 +70,7 @@ const char* to_string(DropFailure failure);
 struct DropFigures {
   int steps = 0;  ///< simulation steps, the check at the end included
   double simulated_seconds = 0.0;
+  int redropped = 0;                 ///< tubes that left the bin and were dropped again
   double deepest_penetration = 0.0;  ///< metres, in the finished scene
   double largest_drift = 0.0;        ///< metres, over the check at the end
 };
