@@ -166,8 +166,9 @@ jobs::AttemptResult export_one(const ExportFormat& format, const scene::DatasetF
     const std::string bytes = dataset.read(scene, cloud), text = dataset.read(scene, "scene.json");
     hashes.require_recorded(scene, {record_bytes(bytes).xxh128, record_bytes(text).xxh128});
     scene::SceneRecord record = scene::parse_scene_json(text, dataset.place(scene, "scene.json"));
-    scene::require_id(record, scene, dataset.place(scene, "scene.json"));
-    files = format.export_scene({entry, std::move(record), cloud::parse_cloud(bytes, dataset.place(scene, cloud))});
+    cloud::Cloud points = cloud::parse_cloud(bytes, dataset.place(scene, cloud));
+    scene::require_same_scene(record, points, scene, dataset.place(scene, "scene.json"));
+    files = format.export_scene({entry, std::move(record), std::move(points)});
   } catch (const IoError& error) {
     return jobs::failed_attempt("unreadable", error.what());  // this scene's fault: the others go on
   }

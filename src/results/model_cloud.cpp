@@ -113,7 +113,7 @@ CloudToModel read_cloud_to_model(const scene::DatasetFiles& files, const CloudFi
     const std::string text = files.read(cloud.scene, "scene.json");
     input.hashes.scene_json_xxh128 = record_bytes(text).xxh128;
     input.scene = scene::parse_scene_json(text, files.place(cloud.scene, "scene.json"));
-    scene::require_id(*input.scene, cloud.scene, files.place(cloud.scene, "scene.json"));
+    scene::require_same_scene(*input.scene, input.cloud, cloud.scene, files.place(cloud.scene, "scene.json"));
   }
   input.read_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return input;

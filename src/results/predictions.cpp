@@ -82,7 +82,8 @@ evaluation::RunScore score_scene(const scene::DatasetFiles& dataset, const std::
   if (dataset.has(scene, "scene.json")) {
     const scene::SceneRecord record =
         scene::parse_scene_json(dataset.read(scene, "scene.json"), dataset.place(scene, "scene.json"));
-    scene::require_id(record, scene, dataset.place(scene, "scene.json"));
+    if (files.filtered.empty())
+      scene::require_same_scene(record, truth.cloud, scene, dataset.place(scene, "scene.json"));
     key.tubes = static_cast<int>(record.scene.tubes.size());
     scene_truth.emplace(record.scene);
   }

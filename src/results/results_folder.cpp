@@ -54,7 +54,6 @@ CurrentScene read_scene(const scene::DatasetFiles& dataset, const scene::Dataset
   if (!dataset.has(scene, "scene.json")) return current;
   const std::string place = dataset.place(scene, "scene.json");
   current.record = scene::parse_scene_json(dataset.read(scene, "scene.json"), place);
-  scene::require_id(*current.record, scene, place);
   current.truth.emplace(current.record->scene);
   return current;
 }

@@ -213,10 +213,17 @@ SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
 
 SceneRecord read_scene_json(const std::string& path) { return parse_scene_json(read_file(path), path); }
 
-void require_id(const SceneRecord& record, const std::string& name, const std::string& place) {
+void require_same_scene(const SceneRecord& record, const cloud::Cloud& cloud, const std::string& name,
+                        const std::string& place) {
   if (name == "." || name == record.id || name.ends_with("/" + record.id)) return;
-  throw_io_error("{}: /id: \"{}\" is not valid; valid: \"{}\", the scene that the file stands in", place, record.id,
-                 name);
+  std::vector<std::size_t> points(record.tube_pixels.size(), 0);
+  for (std::size_t i = 0; i < cloud.labels.size(); ++i)
+    if (cloud::is_finite(cloud.points[i]) && cloud.labels[i] > 0 && cloud.labels[i] <= points.size())
+      ++points[cloud.labels[i] - 1];
+  if (points == record.tube_pixels) return;  // both were copied under another name
+  throw_io_error(
+      "{}: /id: \"{}\" is not valid; valid: \"{}\", the scene that the file stands in and whose cloud is beside it",
+      place, record.id, name);
 }
 
 }  // namespace tubebin::scene

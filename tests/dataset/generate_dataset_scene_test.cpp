@@ -39,7 +39,7 @@ TEST_F(GenerateDataset, WritesWhatItPromises) {
   for (const auto& [id, record] : manifest.records()) {
     EXPECT_EQ(record.files.size(), 3u);
     for (const auto& [name, file] : record.files)
-      EXPECT_EQ(record_bytes(read_text(data_ + "/" + id + "/" + name)), file) << id << " " << name;
+      EXPECT_EQ(record_bytes(read_text(data_ + "/" + id + "/" + name.str())), file) << id << " " << name.str();
   }
   const scene::SceneRecord scene = scene::read_scene_json(data_ + "/Q3/002/scene.json");
   EXPECT_EQ(scene.id, "Q3/002");

@@ -34,9 +34,11 @@ std::string format_scene_json(const SceneRecord& record);
 /// where convenience values (lengths, nodes in world, quaternions) disagree with what they derive from.
 SceneRecord read_scene_json(const std::string& path);
 
-/// Throws IoError where the record, read from `place`, is of another scene than `name`, the scene's path in its data set
-/// (or in a folder of several); "." is any.
-void require_id(const SceneRecord& record, const std::string& name, const std::string& place);
+/// Throws IoError where the record, read from `place`, is of another scene than the cloud beside it: where its id is not
+/// `name`, the scene's path in its data set (or in a folder of several, or "."), and the cloud does not show as many points
+/// of each tube as the record says.
+void require_same_scene(const SceneRecord& record, const cloud::Cloud& cloud, const std::string& name,
+                        const std::string& place);
 
 /// As read_scene_json, from a text; `name` stands for the file in messages.
 SceneRecord parse_scene_json(std::string_view text, const std::string& name);
