@@ -24,7 +24,7 @@ Json to_json(const physics::DropFigures& figures) {
 physics::DropFigures physics_from(const Json& json) {
   return {.steps = json.at("steps"),
           .simulated_seconds = json.at("simulated_seconds"),
-          .redropped = json.at("redropped"),
+          .redropped = json.value("redropped", 0),
           .deepest_penetration = json.at("deepest_penetration"),
           .largest_drift = json.at("largest_drift")};
 }
