@@ -7,13 +7,13 @@
 namespace tubebin::physics {
 namespace {
 
-constexpr double kStep = 0.01;    // seconds
-constexpr double kMass = 0.2;     // kg
-constexpr double kRadius = 0.05;  // metres
+constexpr double kSolverStep = 0.01;  // seconds
+constexpr double kMass = 0.2;         // kg
+constexpr double kRadius = 0.05;      // metres
 
 SolverBody falling_ball(const Vec3& center, const Vec3& gravity) {
   const double inertia = 0.4 * kMass * kRadius * kRadius;
-  return {.velocity = kStep * gravity,
+  return {.velocity = kSolverStep * gravity,
           .center = center,
           .inverse_mass = 1.0 / kMass,
           .inverse_inertia = Eigen::Matrix3d::Identity() / inertia};
@@ -36,7 +36,7 @@ PhysicsOptions converged() {
 StepContact ball_on_slope(double slope, double friction, const PhysicsOptions& options) {
   const Vec3 gravity(options.gravity * std::sin(slope), 0, -options.gravity * std::cos(slope));
   std::vector<StepContact> contacts = {floor_contact(friction)};
-  solve_contacts(options, kStep, {falling_ball({0, 0, kRadius}, gravity)}, contacts);
+  solve_contacts(options, kSolverStep, {falling_ball({0, 0, kRadius}, gravity)}, contacts);
   return contacts[0];
 }
 
@@ -85,7 +85,7 @@ TEST(ContactSolver, FewIterationsAStepEndWithEachContactBearingWhatIsAboveIt) {
   PhysicsOptions options = converged();
   options.solver_iterations = 4;
   Tower tower(20, options);
-  for (int step = 0; step < 600; ++step) solve_contacts(options, kStep, tower.bodies, tower.contacts);
+  for (int step = 0; step < 600; ++step) solve_contacts(options, kSolverStep, tower.bodies, tower.contacts);
   for (std::size_t i = 0; i < tower.contacts.size(); ++i)
     EXPECT_NEAR(tower.contacts[i].force.z(), static_cast<double>(20 - i) * kMass * options.gravity, 0.01) << i;
 }
@@ -95,17 +95,17 @@ TEST(ContactSolver, AGapMayCloseWithinTheStepAndNoFurther) {
   std::vector<StepContact> contacts = {floor_contact(0.0)};
   contacts[0].touch.depth = -0.003;
   const double speed = 1.0;
-  solve_contacts(options, kStep, {falling_ball({0, 0, kRadius}, {0, 0, -speed / kStep})}, contacts);
-  EXPECT_NEAR(speed - kStep * contacts[0].force.z() / kMass, 0.003 / kStep, 1e-9);
+  solve_contacts(options, kSolverStep, {falling_ball({0, 0, kRadius}, {0, 0, -speed / kSolverStep})}, contacts);
+  EXPECT_NEAR(speed - kSolverStep * contacts[0].force.z() / kMass, 0.003 / kSolverStep, 1e-9);
 }
 
 TEST(ContactSolver, AnInterpenetrationIsCorrectedByItsShare) {
   PhysicsOptions options = converged();
   std::vector<StepContact> contacts = {floor_contact(0.0)};
   contacts[0].touch.depth = options.contact_layer + 0.001;
-  solve_contacts(options, kStep, {falling_ball({0, 0, kRadius}, {0, 0, -options.gravity})}, contacts);
-  const double speed_after = kStep * (contacts[0].force.z() / kMass - options.gravity);
-  EXPECT_NEAR(speed_after, options.contact_erp * 0.001 / kStep, 1e-9);
+  solve_contacts(options, kSolverStep, {falling_ball({0, 0, kRadius}, {0, 0, -options.gravity})}, contacts);
+  const double speed_after = kSolverStep * (contacts[0].force.z() / kMass - options.gravity);
+  EXPECT_NEAR(speed_after, options.contact_erp * 0.001 / kSolverStep, 1e-9);
 }
 
 }  // namespace

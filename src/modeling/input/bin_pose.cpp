@@ -8,9 +8,9 @@
 namespace tubebin::modeling {
 namespace {
 
-constexpr double kFarthestOff = 0.03;  ///< metres
-constexpr double kParallel = 0.985;    ///< the cosine of 10 degrees
-constexpr double kBeside = 0.02;       ///< metres that a face may reach beyond where it should end
+constexpr double kFarthestOff = 0.03;    ///< metres
+constexpr double kParallelWall = 0.985;  ///< the cosine of 10 degrees
+constexpr double kBeside = 0.02;         ///< metres that a face may reach beyond where it should end
 
 /// The inner faces of a bin in its own frame: floor first, then the walls. Normals look inward.
 std::array<Plane, 5> inner_faces(const scene::Bin& bin) {
@@ -82,7 +82,7 @@ std::optional<Pose> refined_bin_pose(const ModelingInput& input, const std::vect
     for (const FlatRegion& region : regions) {
       const Vec3 normal = bin_from_world.linear() * region.plane.normal, center = bin_from_world * region.center;
       for (const Plane& face : faces) {
-        if (normal.dot(face.normal) < kParallel || std::abs(face.height(center)) > kFarthestOff) continue;
+        if (normal.dot(face.normal) < kParallelWall || std::abs(face.height(center)) > kFarthestOff) continue;
         if (!is_before_face(*input.bin, center)) continue;
         for (const double a : {-1.0, 1.0})
           for (const double b : {-1.0, 1.0})

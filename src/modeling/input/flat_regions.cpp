@@ -12,7 +12,7 @@ namespace tubebin::modeling {
 namespace {
 
 /// Sums over points.
-struct Moments {
+struct RegionMoments {
   double count = 0.0;
   Vec3 sum = Vec3::Zero();
   double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
@@ -23,7 +23,7 @@ struct Moments {
     xx += p.x() * p.x(), xy += p.x() * p.y(), xz += p.x() * p.z();
     yy += p.y() * p.y(), yz += p.y() * p.z(), zz += p.z() * p.z();
   }
-  Moments& operator+=(const Moments& other) {
+  RegionMoments& operator+=(const RegionMoments& other) {
     count += other.count;
     sum += other.sum;
     xx += other.xx, xy += other.xy, xz += other.xz, yy += other.yy, yz += other.yz, zz += other.zz;
@@ -43,7 +43,7 @@ struct FittedPlane {
   double mean_square = std::numeric_limits<double>::infinity();  ///< of the points' distances, square metres
 
   FittedPlane() = default;
-  explicit FittedPlane(const Moments& moments) : center(moments.mean()) {
+  explicit FittedPlane(const RegionMoments& moments) : center(moments.mean()) {
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
     eigen.computeDirect(moments.covariance());
     normal = eigen.eigenvectors().col(0);
@@ -94,7 +94,7 @@ class Blocks {
   std::size_t size() const { return moments_.size(); }
   int columns() const { return columns_; }
   int rows() const { return rows_; }
-  const Moments& moments(std::size_t block) const { return moments_[block]; }
+  const RegionMoments& moments(std::size_t block) const { return moments_[block]; }
   const FittedPlane& plane(std::size_t block) const { return planes_[block]; }
   bool has_plane(std::size_t block) const { return std::isfinite(planes_[block].mean_square); }
   /// Metres between neighbouring points of the block, square to the view.
@@ -105,7 +105,7 @@ class Blocks {
   float u_min_, v_min_, inverse_block_;
   int columns_, rows_;
   double angle_;
-  std::vector<Moments> moments_;
+  std::vector<RegionMoments> moments_;
   std::vector<FittedPlane> planes_;
 };
 
@@ -126,7 +126,7 @@ class FlatWindows {
     const auto first = static_cast<std::size_t>(row * blocks.columns() + column);
     const auto columns = static_cast<std::size_t>(blocks.columns());
     const std::size_t members[] = {first, first + 1, first + columns, first + columns + 1};
-    Moments sum;
+    RegionMoments sum;
     double within = 0.0;
     for (const std::size_t b : members) {
       if (!blocks.has_plane(b)) return;
@@ -151,7 +151,7 @@ class FlatWindows {
 /// Blocks that lie on one plane.
 class Region {
  public:
-  Moments moments;
+  RegionMoments moments;
   FittedPlane plane;
   double within = 0.0;  ///< sum of the squares of the points' distances to their own blocks' planes
   std::vector<std::uint32_t> blocks;

@@ -17,7 +17,7 @@ namespace {
 /// A link is ruled out where the scan is e^9 times likelier without it.
 constexpr double kLinkCostLimit = 9.0;
 /// A tube shorter than it should be can have other reasons than a missed link: e^-10.
-constexpr double kLengthCostLimit = 10.0;
+constexpr double kTreeLengthCostLimit = 10.0;
 constexpr std::size_t kTreesPerPath = 300;
 constexpr std::size_t kSearchNodeLimit = 2000;
 
@@ -166,7 +166,7 @@ class TreeJoiner {
       for (const std::uint32_t end : {2 * p, 2 * p + 1})
         if (!tree.uses(end) && ends_[end].seen_free < 0.5) room += ends_[end].hidden_reach + radius_;
     const double unexplained = std::max(missing - room, 0.0);
-    return std::min(0.5 * unexplained * unexplained / (sigma * sigma), kLengthCostLimit);
+    return std::min(0.5 * unexplained * unexplained / (sigma * sigma), kTreeLengthCostLimit);
   }
 
   void grow(const Tree& tree) {
