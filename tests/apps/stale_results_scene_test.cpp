@@ -83,7 +83,7 @@ TEST_F(StaleResults, TheSceneJsonOfAnotherSceneIsNamed) {
   fs::copy_file(data_ + "/V2/002/scene.json", data_ + "/V2/001/scene.json", fs::copy_options::overwrite_existing);
   const ProgramResult evaluated = evaluate();
   EXPECT_EQ(evaluated.exit_code, 1);
-  EXPECT_THAT(evaluated.error, HasSubstr("V2/001/scene.json"));
+  EXPECT_THAT(evaluated.error, HasSubstr("was made from another scene.json"));
   EXPECT_EQ(model().exit_code, 3);
   const ProgramResult exported = run("export_dataset", {data_, "--format", "coco", "--output", folder_ / "coco"});
   EXPECT_EQ(exported.exit_code, 3);
