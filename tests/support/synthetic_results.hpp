@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "support/program.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/file_record.hpp"
 #include "tubebin/evaluation/run_score.hpp"
@@ -112,11 +113,6 @@ inline std::string run_folder(const evaluation::RunKey& key) {
   return fmt::format("{}/{}_{}", key.scene, key.method, key.ratio);
 }
 
-inline void write_text(const fs::path& path, const std::string& text) {
-  fs::create_directories(path.parent_path());
-  std::ofstream(path) << text;
-}
-
 /// `folder`/dataset with scene.json files, and `folder`/results.
 inline void write_synthetic_sweep(const fs::path& folder, const SyntheticSweep& sweep) {
   nlohmann::json scenes = nlohmann::json::array();
@@ -150,22 +146,5 @@ inline void write_synthetic_sweep(const fs::path& folder, const SyntheticSweep& 
                                 {"options", {{"radius", 0.0125}}}};
   write_text(folder / "results" / "index.json", index.dump(2));
 }
-
-/// A folder that is gone at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_(make_path()) { fs::create_directories(path_); }
-  ~TemporaryFolder() { fs::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  static fs::path make_path() {
-    std::string name = (fs::temp_directory_path() / "tubebin_evaluation_XXXXXX").string();
-    return mkdtemp(name.data());
-  }
-  fs::path path_;
-};
 
 }  // namespace tubebin::testing
