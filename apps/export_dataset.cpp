@@ -15,7 +15,7 @@ using namespace tubebin;
 
 constexpr const char* kExamples = R"(
 Formats (docs/export_formats.md):
-  bop    6D pose estimation: depth, shaded images, whole and visible masks, poses, a mesh for each tube; millimetres
+  bop    6D pose estimation: depth, shaded images, whole and visible masks, poses, a mesh for each object; millimetres
   coco   instance segmentation: shaded images and one annotations.json with visible and amodal masks
   npz    arrays for numpy, PyTorch and JAX, one file a scene
   ply    clouds of the tubes alone and tubes as text, in the published data set's folders
@@ -23,6 +23,7 @@ Formats (docs/export_formats.md):
 
 Examples:
   export_dataset dataset_a --format bop --output dataset_a_bop
+  export_dataset dataset_a --format coco --crop --output dataset_a_coco
   export_dataset data --format npz --output arrays --jobs 1
 
 Run the same command again after an interruption, or when the data set has grown: complete scenes are kept.
@@ -56,6 +57,8 @@ int main(int argc, char** argv) {
       ->required()
       ->check(CLI::IsMember(exports::export_format_names()));
   app.add_option("-o,--output", options.output, "Folder of the export")->required()->type_name("DIR");
+  app.add_flag("--crop", options.crop, "Images of the bin's window alone, with the camera adjusted (bop, coco)");
+  app.add_flag("--normals", options.normals, "Also the surfaces' normals (npz)");
   app.add_option("-j,--jobs", options.jobs, "Worker processes")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_flag("-q,--quiet", quiet, "No progress, only errors and results");
   return run_program("export_dataset", app, argc, argv, [&] { return run(options, quiet); });

@@ -21,14 +21,15 @@ constexpr const char* kCameraProperties =
     "property float centery\nproperty int viewportx\nproperty int viewporty\nproperty float k1\nproperty "
     "float k2\n";
 
+/// Whole numbers are `int`: some readers drop `uint`.
 std::string format_header(const Cloud& cloud) {
   std::string header = fmt::format(
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
       "property float z\n",
       cloud.size());
   if (!cloud.colors.empty()) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-  if (!cloud.labels.empty()) header += "property uint label\n";
-  if (!cloud.sources.empty()) header += "property uint source\n";
+  if (!cloud.labels.empty()) header += "property int label\n";
+  if (!cloud.sources.empty()) header += "property int source\n";
   return header + kCameraProperties + "end_header\n";
 }
 

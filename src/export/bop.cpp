@@ -3,7 +3,7 @@
 
 #include "core/json_reader.hpp"
 #include "export/formats.hpp"
-#include "export/scene_image.hpp"
+#include "export/symmetries.hpp"
 #include "export/tube_mesh_file.hpp"
 #include "tubebin/core/atomic_file.hpp"
 
@@ -19,6 +19,9 @@ constexpr const char* kModelsInfo = "models_info.json";
 constexpr const char* kGroundTruth = "scene_gt.json";
 constexpr const char* kGroundTruthInfo = "scene_gt_info.json";
 constexpr const char* kSceneCamera = "scene_camera.json";
+constexpr const char* kSensor = "camera.json";
+/// The toolkit evaluates on meshes of a folder of their own.
+constexpr const char* kModelFolders[] = {"models", "models_eval"};
 
 std::string text_of(const Json& json) { return json.dump(1) + "\n"; }
 
@@ -42,15 +45,6 @@ double depth_scale(const scene::Scanner& scanner) {
   return scale;
 }
 
-/// BOP's pixels have their centres at whole numbers, ours half a pixel farther.
-Eigen::Matrix3d intrinsics(const scene::Camera& camera) {
-  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
-  k(0, 0) = k(1, 1) = camera.focal_length();
-  k(0, 2) = camera.width() / 2.0 - 0.5;
-  k(1, 2) = camera.height() / 2.0 - 0.5;
-  return k;
-}
-
 Raster<std::uint16_t> depth_image(const Raster<float>& depths, double scale) {
   Raster<std::uint16_t> image(depths.width, depths.height, 0);
   for (std::size_t i = 0; i < depths.values.size(); ++i)
@@ -59,13 +53,20 @@ Raster<std::uint16_t> depth_image(const Raster<float>& depths, double scale) {
   return image;
 }
 
-Json camera_json(const scene::Camera& camera, double scale) {
-  const Pose scanner_from_world = camera.world_from_scanner().inverse();
+Json camera_json(const SceneImage& image, double scale) {
+  const Pose scanner_from_world = image.camera().world_from_scanner().inverse();
   return {{"0",
-           {{"cam_K", rows_of(intrinsics(camera))},
+           {{"cam_K", rows_of(image.intrinsics())},
             {"cam_R_w2c", rows_of(scanner_from_world.linear())},
             {"cam_t_w2c", millimetres(scanner_from_world.translation())},
             {"depth_scale", scale}}}};
+}
+
+Json sensor_json(const SceneImage& image, double scale) {
+  const Eigen::Matrix3d k = image.intrinsics();
+  return {{"cx", k(0, 2)},         {"cy", k(1, 2)}, {"depth_scale", scale},
+          {"fx", k(0, 0)},         {"fy", k(1, 1)}, {"height", image.height()},
+          {"width", image.width()}};
 }
 
 Json pose_json(const scene::PlacedTube& placed, const scene::Camera& camera, int object) {
@@ -87,18 +88,46 @@ Json info_json(const Mask& whole, const Mask& visible, const Raster<float>& dept
           {"visib_fract", all > 0 ? static_cast<double>(seen) / static_cast<double>(all) : 0.0}};
 }
 
-Json model_json(const TubeMeshFile& mesh) {
+/// Row by row, as BOP has it; millimetres.
+Json motion_json(const Pose& motion) {
+  Pose motion_mm = motion;
+  motion_mm.translation() *= kMillimetres;
+  Json rows = Json::array();
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) rows.push_back(motion_mm.matrix()(row, column));
+  return rows;
+}
+
+Json model_json(const TubeMeshFile& mesh, const tube::Tube& tube) {
   const Vec3 low = mesh.bounds_mm.min(), size = mesh.bounds_mm.sizes();
-  return {{"diameter", mesh.diameter_mm}, {"min_x", low.x()},   {"min_y", low.y()},  {"min_z", low.z()},
-          {"size_x", size.x()},           {"size_y", size.y()}, {"size_z", size.z()}};
+  Json model = {{"diameter", mesh.diameter_mm}, {"min_x", low.x()},   {"min_y", low.y()},  {"min_z", low.z()},
+                {"size_x", size.x()},           {"size_y", size.y()}, {"size_z", size.z()}};
+  const Symmetries symmetries = find_symmetries(tube);
+  for (const Symmetries::Axis& axis : symmetries.continuous)
+    model["symmetries_continuous"].push_back(
+        {{"axis", {axis.direction.x(), axis.direction.y(), axis.direction.z()}}, {"offset", millimetres(axis.origin)}});
+  for (const Pose& motion : symmetries.discrete) model["symmetries_discrete"].push_back(motion_json(motion));
+  if (!tube.kind.empty()) model["kind"] = tube.kind;
+  return model;
+}
+
+/// An image's targets: how often each object of which enough is visible is there.
+void add_targets(const SceneEntry& entry, const Json& infos, Json& targets) {
+  std::map<int, int> instances;
+  for (std::size_t k = 0; k < entry.tubes.size(); ++k)
+    if (infos.at(k).at("visib_fract").get<double>() >= kTargetVisibility) ++instances[entry.tubes[k].object];
+  for (const auto& [object, count] : instances)
+    targets.push_back({{"im_id", 0}, {"inst_count", count}, {"obj_id", object}, {"scene_id", entry.number}});
 }
 
 class BopFormat : public ExportFormat {
  public:
+  explicit BopFormat(ImageRegion region) : region_(region) {}
+
   std::string scene_path(const SceneEntry& entry) const override { return fmt::format("test/{:06d}", entry.number); }
 
   SceneFiles export_scene(const SceneToExport& scene) const override {
-    const SceneImage image(scene);
+    const SceneImage image(scene, region_);
     const scene::Camera& camera = image.camera();
     const double scale = depth_scale(scene.record.scene.scanner);
     const Raster<float> depths = image.depths();
@@ -107,19 +136,21 @@ class BopFormat : public ExportFormat {
     Json poses = Json::array(), infos = Json::array(), models = Json::object();
     for (std::size_t k = 0; k < views.size(); ++k) {
       const scene::PlacedTube& placed = scene.record.scene.tubes[k];
-      const int object = scene.entry.first_object + static_cast<int>(k);
+      const int object = scene.entry.tubes[k].object;
       const TubeMeshFile mesh = tube_mesh_file(placed.tube);
-      const Mask whole = mask_of(views[k], camera), visible = image.visible_mask(static_cast<cloud::Label>(k + 1));
-      files.beside[fmt::format("models/obj_{:06d}.ply", object)] = mesh.ply;
+      const Mask whole = image.mask_of(views[k]), visible = image.visible_mask(static_cast<cloud::Label>(k + 1));
+      for (const char* folder : kModelFolders)
+        files.beside[fmt::format("{}/obj_{:06d}.ply", folder, object)] = mesh.ply;
       files.scene[fmt::format("mask/000000_{:06d}.png", k)] = png_of(whole);
       files.scene[fmt::format("mask_visib/000000_{:06d}.png", k)] = png_of(visible);
-      models[std::to_string(object)] = model_json(mesh);
+      models[std::to_string(object)] = model_json(mesh, placed.tube);
       poses.push_back(pose_json(placed, camera, object));
       infos.push_back(info_json(whole, visible, depths));
     }
-    files.scene["rgb/000000.png"] = png_of_rgb(image.shaded_rgb(), camera.width(), camera.height());
+    files.scene["rgb/000000.png"] = png_of_rgb(image.shaded_rgb(), image.width(), image.height());
     files.scene["depth/000000.png"] = png_of(depth_image(depths, scale));
-    files.scene[kSceneCamera] = text_of(camera_json(camera, scale));
+    files.scene[kSceneCamera] = text_of(camera_json(image, scale));
+    files.scene[kSensor] = text_of(sensor_json(image, scale));
     files.scene[kGroundTruth] = text_of({{"0", poses}});
     files.scene[kGroundTruthInfo] = text_of({{"0", infos}});
     files.scene[kModelsInfo] = text_of(models);
@@ -131,35 +162,20 @@ class BopFormat : public ExportFormat {
     for (const SceneEntry& entry : entries) {
       const std::string folder = output + "/" + scene_path(entry) + "/";
       models.update(read_json(folder + kModelsInfo));
-      const Json infos = read_json(folder + kGroundTruthInfo).at("0");
-      for (int k = 0; k < entry.tubes; ++k)
-        if (infos.at(static_cast<std::size_t>(k)).at("visib_fract").get<double>() >= kTargetVisibility)
-          targets.push_back(
-              {{"im_id", 0}, {"inst_count", 1}, {"obj_id", entry.first_object + k}, {"scene_id", entry.number}});
+      add_targets(entry, read_json(folder + kGroundTruthInfo).at("0"), targets);
     }
-    Files files = {{std::string("models/") + kModelsInfo, text_of(models)},
-                   {"test_targets_bop19.json", text_of(targets)}};
-    if (!entries.empty()) files["camera.json"] = text_of(sensor_json(output + "/" + scene_path(entries.front())));
+    Files files = {{"test_targets_bop19.json", text_of(targets)}};
+    for (const char* folder : kModelFolders) files[std::string(folder) + "/" + kModelsInfo] = text_of(models);
+    if (!entries.empty()) files[kSensor] = read_file(output + "/" + scene_path(entries.front()) + "/" + kSensor);
     return files;
   }
 
  private:
-  /// The camera of all scenes of a data set.
-  static Json sensor_json(const std::string& scene) {
-    const Json camera = read_json(scene + "/" + kSceneCamera).at("0");
-    const Json& k = camera.at("cam_K");
-    return {{"cx", k[2]},
-            {"cy", k[5]},
-            {"depth_scale", camera.at("depth_scale")},
-            {"fx", k[0]},
-            {"fy", k[4]},
-            {"height", std::lround(2.0 * k[5].get<double>()) + 1},
-            {"width", std::lround(2.0 * k[2].get<double>()) + 1}};
-  }
+  ImageRegion region_;
 };
 
 }  // namespace
 
-std::unique_ptr<ExportFormat> bop_format() { return std::make_unique<BopFormat>(); }
+std::unique_ptr<ExportFormat> bop_format(ImageRegion region) { return std::make_unique<BopFormat>(region); }
 
 }  // namespace tubebin::exports

@@ -11,6 +11,7 @@
 
 #include "core/json_reader.hpp"
 #include "export/formats.hpp"
+#include "export/object_numbers.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/file_record.hpp"
@@ -37,14 +38,32 @@ physics::PhysicsOptions physics_of(const std::string& dataset) {
                                               : physics::PhysicsOptions{};
 }
 
-const std::map<std::string, std::function<std::unique_ptr<ExportFormat>(const std::string& dataset)>>& formats() {
-  static const std::map<std::string, std::function<std::unique_ptr<ExportFormat>(const std::string&)>> formats = {
-      {"bop", [](const std::string&) { return bop_format(); }},
-      {"coco", [](const std::string&) { return coco_format(); }},
-      {"npz", [](const std::string&) { return npz_format(); }},
-      {"ply", [](const std::string&) { return ply_format(); }},
-      {"sdf", [](const std::string& dataset) { return sdf_format(physics_of(dataset)); }}};
+ImageRegion region_of(const ExportOptions& options) { return options.crop ? ImageRegion::bin : ImageRegion::full; }
+
+using MakeFormat = std::function<std::unique_ptr<ExportFormat>(const ExportOptions& options)>;
+
+const std::map<std::string, MakeFormat>& formats() {
+  static const std::map<std::string, MakeFormat> formats = {
+      {"bop", [](const ExportOptions& options) { return bop_format(region_of(options)); }},
+      {"coco", [](const ExportOptions& options) { return coco_format(region_of(options)); }},
+      {"npz", [](const ExportOptions& options) { return npz_format(options.normals); }},
+      {"ply", [](const ExportOptions&) { return ply_format(); }},
+      {"sdf", [](const ExportOptions& options) { return sdf_format(physics_of(options.dataset)); }}};
   return formats;
+}
+
+void check(const ExportOptions& options) {
+  if (!formats().contains(options.format))
+    throw_config_error("--format {}: unknown; one of {}", options.format, fmt::join(export_format_names(), ", "));
+  if (options.crop && options.format != "bop" && options.format != "coco")
+    throw_config_error("--crop: {} has no images; it goes with bop and coco", options.format);
+  if (options.normals && options.format != "npz")
+    throw_config_error("--normals: {} has none; it goes with npz", options.format);
+}
+
+/// The format and what was chosen with it, as the index has it.
+std::string described(const ExportOptions& options) {
+  return options.format + (options.crop ? " --crop" : "") + (options.normals ? " --normals" : "");
 }
 
 /// One line of the output's index: a scene, and what it was made from.
@@ -59,6 +78,7 @@ struct IndexLine {
 struct Source {
   IndexLine line;
   results::CloudFile cloud;
+  std::vector<ObjectIdentity> tubes;
 };
 
 std::vector<Source> list_sources(const scene::DatasetFiles& dataset, const scene::DatasetHashes& hashes) {
@@ -68,9 +88,11 @@ std::vector<Source> list_sources(const scene::DatasetFiles& dataset, const scene
   for (const results::CloudFile& cloud : results::find_clouds(dataset)) {
     if (cloud.scene == ".") throw_io_error("{}: is a single scene; give the folder of its data set", dataset.dataset());
     const std::string text = dataset.read(cloud.scene, "scene.json");
-    const std::size_t tubes =
-        scene::parse_scene_json(text, dataset.place(cloud.scene, "scene.json")).scene.tubes.size();
-    sources.push_back({{cloud.scene, tubes, hashes.of(cloud.scene)}, cloud});
+    std::vector<ObjectIdentity> tubes;
+    for (const scene::PlacedTube& placed :
+         scene::parse_scene_json(text, dataset.place(cloud.scene, "scene.json")).scene.tubes)
+      tubes.push_back(identify(placed.tube));
+    sources.push_back({{cloud.scene, tubes.size(), hashes.of(cloud.scene)}, cloud, std::move(tubes)});
   }
   return sources;
 }
@@ -143,11 +165,14 @@ std::vector<Source> settle_index(const scene::DatasetFiles& dataset, const scene
 
 std::vector<SceneEntry> number_scenes(const std::vector<Source>& sources) {
   std::vector<SceneEntry> entries;
-  int first_object = 1;
+  ObjectNumbers objects;
+  int first_tube = 1;
   for (const Source& source : sources) {
-    const int tubes = static_cast<int>(source.line.tubes);
-    entries.push_back({source.line.scene, static_cast<int>(entries.size()) + 1, first_object, tubes});
-    first_object += tubes;
+    std::vector<TubeNumbers> tubes;
+    for (const ObjectIdentity& tube : source.tubes) tubes.push_back(objects.number(tube));
+    first_tube += static_cast<int>(tubes.size());
+    entries.push_back({source.line.scene, static_cast<int>(entries.size()) + 1,
+                       first_tube - static_cast<int>(tubes.size()), std::move(tubes)});
   }
   return entries;
 }
@@ -201,18 +226,16 @@ std::vector<std::string> export_format_names() {
 
 ExportReport export_dataset(const ExportOptions& options, jobs::Progress::Style progress_style) try {
   const auto start = std::chrono::steady_clock::now();
-  const auto known = formats().find(options.format);
-  if (known == formats().end())
-    throw_config_error("--format {}: unknown; one of {}", options.format, fmt::join(export_format_names(), ", "));
+  check(options);
   refuse_if_no_export(options.output);
   const scene::DatasetFiles dataset(options.dataset);
   const scene::DatasetHashes hashes(dataset);
   if (!fs::exists(options.output)) list_sources(dataset, hashes);  // leaves no folder where there is nothing to export
   const OutputFolder output(options.output);
   const jobs::FolderLock lock(output);
-  const std::vector<Source> sources = settle_index(dataset, hashes, output, options.format);
+  const std::vector<Source> sources = settle_index(dataset, hashes, output, described(options));
   const std::vector<SceneEntry> entries = number_scenes(sources);
-  const std::unique_ptr<ExportFormat> format = known->second(options.dataset);
+  const std::unique_ptr<ExportFormat> format = formats().at(options.format)(options);
   remove_all_unfinished(output);
 
   const auto is_complete = [&](const SceneEntry& entry) {

@@ -10,12 +10,18 @@
 
 namespace tubebin::exports {
 
+/// By what numbers a tube is known.
+struct TubeNumbers {
+  int kind = 1;    ///< among the kinds, from 1
+  int object = 1;  ///< tubes of one kind and shape have the same
+};
+
 /// A scene's place in the exported data set.
 struct SceneEntry {
-  std::string name;      ///< "A10/007"
-  int number = 1;        ///< among the scenes, from 1
-  int first_object = 1;  ///< number of its tube 1 among all tubes, from 1
-  int tubes = 0;
+  std::string name;    ///< "A10/007"
+  int number = 1;      ///< among the scenes, from 1
+  int first_tube = 1;  ///< number of its tube 1 among all tubes, from 1
+  std::vector<TubeNumbers> tubes;
 };
 
 /// What is exported. The cloud has one label a point.

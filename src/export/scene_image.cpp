@@ -24,6 +24,23 @@ Pixel pixel_on_ray(const cloud::Point& point, const scene::Camera& camera) {
   return {static_cast<int>(std::floor(place.x())), static_cast<int>(std::floor(place.y()))};
 }
 
+/// The pixels that the bin's corners span; all where the scanner does not have the whole bin before it.
+scene::PixelWindow bin_window(const scene::Scene& scene, const scene::Camera& camera) {
+  const Pose scanner_from_world = camera.world_from_scanner().inverse();
+  Eigen::AlignedBox2d bounds;
+  for (const scene::Box& box : scene::bin_boxes(scene.bin))
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 p_in_scanner = scanner_from_world * box.corner(static_cast<scene::Box::CornerType>(corner));
+      if (p_in_scanner.z() < scene.scanner.range_min) return {0, 0, camera.width(), camera.height()};
+      bounds.extend(camera.project(p_in_scanner));
+    }
+  bounds = bounds.intersection(
+      Eigen::AlignedBox2d(Eigen::Vector2d::Zero(), Eigen::Vector2d(camera.width(), camera.height())));
+  if (bounds.isEmpty()) return {0, 0, camera.width(), camera.height()};
+  const Eigen::Vector2i low = bounds.min().array().floor().cast<int>(), high = bounds.max().array().ceil().cast<int>();
+  return {low.x(), low.y(), high.x() - low.x(), high.y() - low.y()};
+}
+
 void check_consistent(const SceneToExport& scene) {
   const cloud::Cloud& cloud = scene.cloud;
   const scene::PixelWindow& window = scene.record.window;
@@ -40,17 +57,33 @@ void check_consistent(const SceneToExport& scene) {
 
 }  // namespace
 
-SceneImage::SceneImage(const SceneToExport& scene)
-    : scene_(scene), camera_(scene.record.scene.scanner), points_(camera_.width(), camera_.height(), -1) {
+SceneImage::SceneImage(const SceneToExport& scene, ImageRegion region)
+    : scene_(scene),
+      camera_(scene.record.scene.scanner),
+      region_(region == ImageRegion::bin ? bin_window(scene.record.scene, camera_)
+                                         : scene::PixelWindow{0, 0, camera_.width(), camera_.height()}),
+      points_(region_.width, region_.height, -1) {
   check_consistent(scene);
   const cloud::Cloud& cloud = scene.cloud;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!cloud::is_finite(cloud.points[i]) || (!cloud.sources.empty() && cloud.sources[i] != 0)) continue;
     const Pixel pixel =
         cloud.organized() ? pixel_of_organized(i, scene.record.window) : pixel_on_ray(cloud.points[i], camera_);
-    if (pixel.column >= 0 && pixel.column < points_.width && pixel.row >= 0 && pixel.row < points_.height)
-      points_.at(pixel.column, pixel.row) = static_cast<int>(i);
+    if (has(pixel.column, pixel.row)) points_.at(pixel.column - region_.x, pixel.row - region_.y) = static_cast<int>(i);
   }
+}
+
+bool SceneImage::has(int column, int row) const {
+  return column >= region_.x && column < region_.x + region_.width && row >= region_.y &&
+         row < region_.y + region_.height;
+}
+
+Eigen::Matrix3d SceneImage::intrinsics() const {
+  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
+  k(0, 0) = k(1, 1) = camera_.focal_length();
+  k(0, 2) = camera_.width() / 2.0 - region_.x;
+  k(1, 2) = camera_.height() / 2.0 - region_.y;
+  return k;
 }
 
 Raster<float> SceneImage::depths() const {
@@ -99,9 +132,10 @@ std::vector<std::uint8_t> SceneImage::shaded_rgb() const {
   return rgb;
 }
 
-Mask mask_of(const std::vector<scan::SeenPixel>& pixels, const scene::Camera& camera) {
-  Mask mask(camera.width(), camera.height(), 0);
-  for (const scan::SeenPixel& pixel : pixels) mask.at(pixel.column, pixel.row) = 255;
+Mask SceneImage::mask_of(const std::vector<scan::SeenPixel>& pixels) const {
+  Mask mask(region_.width, region_.height, 0);
+  for (const scan::SeenPixel& pixel : pixels)
+    if (has(pixel.column, pixel.row)) mask.at(pixel.column - region_.x, pixel.row - region_.y) = 255;
   return mask;
 }
 

@@ -28,14 +28,22 @@ struct Raster {
 
 using Mask = Raster<std::uint8_t>;  ///< 255 inside, 0 outside
 
-/// In which pixel of the full image each point lies.
+/// The part of the scanner's image that is written. The bin's window is the same for all scenes of a data set: it covers
+/// the bin, and cuts off what of a tube looks past it.
+enum class ImageRegion { full, bin };
+
+/// In which pixel of the image each point lies.
 class SceneImage {
  public:
   /// Points without a pixel of their own (not organized) go to the pixel that their ray passes. Throws IoError where
   /// the cloud contradicts the record.
-  explicit SceneImage(const SceneToExport& scene);
+  SceneImage(const SceneToExport& scene, ImageRegion region);
 
   const scene::Camera& camera() const { return camera_; }
+  int width() const { return region_.width; }
+  int height() const { return region_.height; }
+  /// Of this image; its pixels have their centres at halves.
+  Eigen::Matrix3d intrinsics() const;
   /// Metres along the optical axis; 0 where nothing was seen.
   Raster<float> depths() const;
   /// -1 where nothing was seen.
@@ -43,14 +51,18 @@ class SceneImage {
   Mask visible_mask(cloud::Label label) const;
   /// Three bytes a pixel: grey tubes in a darker bin, lit from the scanner, black where nothing was seen.
   std::vector<std::uint8_t> shaded_rgb() const;
+  /// Of pixels of the full image.
+  Mask mask_of(const std::vector<scan::SeenPixel>& pixels) const;
 
  private:
+  /// Whether this image has the full image's pixel.
+  bool has(int column, int row) const;
+
   const SceneToExport& scene_;
   scene::Camera camera_;
+  scene::PixelWindow region_;
   Raster<int> points_;  // index into the cloud, -1: none
 };
-
-Mask mask_of(const std::vector<scan::SeenPixel>& pixels, const scene::Camera& camera);
 
 /// Smallest box around the mask's pixels: x, y, width, height; -1 -1 -1 -1 where there are none.
 struct PixelBox {

@@ -60,48 +60,123 @@ def box_of(mask):
     return [columns.min(), rows.min(), np.ptp(columns) + 1, np.ptp(rows) + 1] if rows.size else [-1] * 4
 
 
-def check_bop(dataset, export):
-    """Through the loaders of bop_toolkit."""
-    inout = need("bop_toolkit_lib.inout")
-    objects = 0
-    models_info = inout.load_json(f"{export}/models/models_info.json", keys_to_int=True)
-    targets = inout.load_json(f"{export}/test_targets_bop19.json")
-    visible_enough = []
+def image_of(path):
+    return np.array(need("PIL.Image").open(path))
+
+
+def by_number(path):
+    """A JSON file whose keys are numbers."""
+    return {int(key): value for key, value in json.load(open(path)).items()}
+
+
+def load_ply(path):
+    """Vertices, normals and triangles."""
+    header, body = open(path, "rb").read().split(b"end_header\n", 1)
+    vertices, faces = (int(header.split(b"element " + name)[1].split()[0]) for name in (b"vertex", b"face"))
+    points = np.frombuffer(body, "<f4", 6 * vertices).reshape(-1, 6).astype(float)
+    corners = np.frombuffer(body[24 * vertices:], [("count", "u1"), ("corners", "<i4", 3)], faces)
+    assert (corners["count"] == 3).all() and corners["corners"].max() < vertices
+    return {"pts": points[:, :3], "normals": points[:, 3:], "faces": corners["corners"]}
+
+
+def check_bop(dataset, export, crop=""):
+    kinds = []
+    models_info = by_number(f"{export}/models/models_info.json")
+    assert by_number(f"{export}/models_eval/models_info.json") == models_info
+    targets = json.load(open(f"{export}/test_targets_bop19.json"))
+    visible_enough, objects = [], set()
     for number, name, scene in scenes_of(dataset, export):
         folder = f"{export}/test/{number:06d}"
-        camera = inout.load_scene_camera(f"{folder}/scene_camera.json")[0]
-        depth = inout.load_depth(f"{folder}/depth/000000.png") * camera["depth_scale"]
-        assert inout.load_im(f"{folder}/rgb/000000.png").shape == (*depth.shape, 3)
-        assert np.array_equal(depth > 0, scene.in_image(scene.seen)), name
+        camera = json.load(open(f"{folder}/scene_camera.json"))["0"]
+        K, R = np.reshape(camera["cam_K"], (3, 3)), np.reshape(camera["cam_R_w2c"], (3, 3))
+        depth = image_of(f"{folder}/depth/000000.png") * camera["depth_scale"]
+        assert image_of(f"{folder}/rgb/000000.png").shape == (*depth.shape, 3)
+        scanner = scene.truth["scanner"]
+        middle = np.array([scanner["width"], scanner["height"]]) / 2  # of the full image, where the optical axis is
+        x, y = (middle - K[:2, 2]).round().astype(int)
+        height, width = depth.shape
+
+        def cut(full):
+            return full[y:y + height, x:x + width]
+
+        assert (x > 0) == (depth.shape != (scanner["height"], scanner["width"])) == (crop == "crop"), name
+        assert np.array_equal(depth > 0, cut(scene.in_image(scene.seen))), name
         rows, columns = np.nonzero(depth)
-        in_camera = 1000 * scene.xyz[scene.seen].astype(float) @ camera["cam_R_w2c"].T + camera["cam_t_w2c"].T
-        image = in_camera @ camera["cam_K"].T
-        assert np.abs(image[:, :2] / image[:, 2:] - np.stack([columns, rows], 1)).max() < 1e-3, name
+        xyz = cut(scene.in_image(scene.xyz[..., 0])), cut(scene.in_image(scene.xyz[..., 1])), cut(
+            scene.in_image(scene.xyz[..., 2]))
+        in_camera = 1000 * np.stack([c[rows, columns] for c in xyz], 1).astype(float) @ R.T + camera["cam_t_w2c"]
+        image = in_camera @ K.T
+        assert np.abs(image[:, :2] / image[:, 2:] - np.stack([columns, rows], 1) - 0.5).max() < 1e-3, name
         assert np.abs(in_camera[:, 2] - depth[rows, columns]).max() <= 0.501 * camera["depth_scale"], name
-        poses = inout.load_scene_gt(f"{folder}/scene_gt.json")[0]
-        infos = inout.load_json(f"{folder}/scene_gt_info.json", keys_to_int=True)[0]
+        poses = json.load(open(f"{folder}/scene_gt.json"))["0"]
+        infos = json.load(open(f"{folder}/scene_gt_info.json"))["0"]
         assert len(poses) == len(infos) == len(scene.truth["tubes"])
+        instances = {}
         for k, (pose, info, tube) in enumerate(zip(poses, infos, scene.truth["tubes"])):
-            objects += 1
             where = f"{name}, tube {k + 1}"
-            assert pose["obj_id"] == objects, where
-            whole = inout.load_im(f"{folder}/mask/000000_{k:06d}.png") > 0
-            visible = inout.load_im(f"{folder}/mask_visib/000000_{k:06d}.png") > 0
-            assert np.array_equal(visible, scene.tube_image(k + 1)), where
+            kind = tube.get("kind", "tube")
+            kinds += [kind] if kind not in kinds else []
+            number_of_object = pose["obj_id"]
+            assert (number_of_object - 1) // 1000000 == kinds.index(kind), where
+            objects.add(number_of_object)
+            whole = image_of(f"{folder}/mask/000000_{k:06d}.png") > 0
+            visible = image_of(f"{folder}/mask_visib/000000_{k:06d}.png") > 0
+            assert np.array_equal(visible, cut(scene.tube_image(k + 1))), where
             assert not (visible & ~whole).any(), where
-            assert info["px_count_all"] == whole.sum() == tube["amodal_pixels"], where
-            assert info["px_count_visib"] == visible.sum() == tube["visible_pixels"], where
+            assert info["px_count_all"] == whole.sum() and info["px_count_visib"] == visible.sum(), where
+            if not crop:
+                assert info["px_count_all"] == tube["amodal_pixels"], where
+                assert info["px_count_visib"] == tube["visible_pixels"], where
+                assert abs(info["visib_fract"] - tube["visible_fraction"]) < 1e-12, where
             assert info["px_count_valid"] == (whole & (depth > 0)).sum(), where
-            assert abs(info["visib_fract"] - tube["visible_fraction"]) < 1e-12, where
             assert info["bbox_obj"] == box_of(whole) and info["bbox_visib"] == box_of(visible), where
             if info["visib_fract"] >= 0.1:
-                visible_enough.append({"im_id": 0, "inst_count": 1, "obj_id": objects, "scene_id": number})
-            model = inout.load_ply(f"{export}/models/obj_{objects:06d}.ply")
-            check_model(model, models_info[objects], pose, camera["cam_K"], whole, where)
-    assert len(models_info) == objects
+                instances[number_of_object] = instances.get(number_of_object, 0) + 1
+            path = f"models/obj_{number_of_object:06d}.ply"
+            assert open(f"{export}/{path}", "rb").read() == open(f"{export}/models_eval{path[6:]}", "rb").read()
+            model = load_ply(f"{export}/{path}")
+            check_model(model, models_info[number_of_object], pose, K, whole, where)
+            check_symmetries(model["pts"], models_info[number_of_object], tube, where)
+        visible_enough += [{"im_id": 0, "inst_count": count, "obj_id": number_of_object, "scene_id": number}
+                           for number_of_object, count in sorted(instances.items())]
+    assert set(models_info) == objects
     assert targets == visible_enough
-    sensor = inout.load_cam_params(f"{export}/camera.json")
-    assert sensor["im_size"] == depth.shape[::-1] and np.allclose(sensor["K"], camera["cam_K"])
+    sensor = json.load(open(f"{export}/camera.json"))
+    assert [sensor["width"], sensor["height"]] == [width, height]
+    assert [sensor["fx"], sensor["fy"], sensor["cx"], sensor["cy"]] == [K[0, 0], K[1, 1], K[0, 2], K[1, 2]]
+
+
+def check_symmetries(points, info, tube, where):
+    """Every symmetry takes the axes of the tube's cylinders, or the ball's centre, to themselves."""
+    nodes = 1000 * np.array(tube["nodes"], float).reshape(-1, 3)
+    ends = np.array([(c["node_a"], c["node_b"]) for c in tube["cylinders"]], int).reshape(-1, 2)
+    straight = len(nodes) > 1 and np.linalg.matrix_rank(nodes - nodes[0], tol=1e-3) == 1
+    ring = len(nodes) > 2 and (np.bincount(ends.ravel(), minlength=len(nodes)) == 2).all()
+    continuous, discrete = info.get("symmetries_continuous", []), info.get("symmetries_discrete", [])
+    assert [len(continuous), len(discrete)] == ([3, 0] if len(nodes) == 1 else [1, 1] if straight or ring else [0, 0]), where
+    motions = [(np.reshape(motion, (4, 4))[:3, :3], np.reshape(motion, (4, 4))[:3, 3]) for motion in discrete]
+    for symmetry in continuous:
+        axis, offset = np.array(symmetry["axis"]), np.array(symmetry["offset"])
+        assert abs(np.linalg.norm(axis) - 1) < 1e-9, where
+        for angle in (0.3, 1.0, 2.5):
+            cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+            turn = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+            motions.append((turn, offset - turn @ offset))
+    sagitta = 0.0
+    if ring:
+        radius = np.linalg.norm(nodes[0] - nodes.mean(0))
+        sagitta = radius * (1 - np.cos(np.pi / len(nodes)))
+    for turn, shift in motions:
+        for node in nodes @ turn.T + shift:
+            assert distance_to_axes(node, nodes, ends) <= sagitta + 1e-3, where
+
+
+def distance_to_axes(point, nodes, ends):
+    if not len(ends):
+        return np.linalg.norm(nodes - point, axis=1).min()
+    a, b = nodes[ends[:, 0]], nodes[ends[:, 1]]
+    along = np.clip(((point - a) * (b - a)).sum(1) / ((b - a) ** 2).sum(1), 0, 1)[:, None]
+    return np.linalg.norm(a + along * (b - a) - point, axis=1).min()
 
 
 def check_model(model, info, pose, K, whole, where):
@@ -111,19 +186,19 @@ def check_model(model, info, pose, K, whole, where):
     diameter = max(np.sqrt(((points - point) ** 2).sum(1).max()) for point in points)
     assert abs(diameter - info["diameter"]) < 1e-2, where
     assert np.allclose(np.linalg.norm(model["normals"], axis=1), 1, atol=1e-5), where
-    image = (points @ pose["cam_R_m2c"].T + pose["cam_t_m2c"].T) @ K.T
+    image = (points @ np.reshape(pose["cam_R_m2c"], (3, 3)).T + pose["cam_t_m2c"]) @ K.T
     pixels = image[:, :2] / image[:, 2:]
     x, y, width, height = box_of(whole)
     is_cut = x == 0 or y == 0 or x + width == whole.shape[1] or y + height == whole.shape[0]
     if not is_cut:  # the mesh reaches all around the silhouette's pixels, and beyond them by tips thinner than a pixel
-        beyond = np.concatenate([[x, y] - pixels.min(0), pixels.max(0) - [x + width - 1, y + height - 1]])
+        beyond = np.concatenate([[x, y] - pixels.min(0) + 0.5, pixels.max(0) - [x + width - 0.5, y + height - 0.5]])
         assert beyond.min() > -0.05 and beyond.max() < 2.0, (where, beyond)
 
 
 def check_coco(dataset, export):
     """Through pycocotools."""
     coco = need("pycocotools.coco").COCO(f"{export}/annotations.json")
-    assert [category["name"] for category in coco.loadCats(coco.getCatIds())] == ["tube"]
+    categories = {category["id"]: category["name"] for category in coco.loadCats(coco.getCatIds())}
     for number, name, scene in scenes_of(dataset, export):
         image = coco.loadImgs([number])[0]
         assert image["scene"] == name and open(f"{export}/{image['file_name']}", "rb").read(4) == b"\x89PNG"
@@ -133,6 +208,7 @@ def check_coco(dataset, export):
         for annotation in annotations:
             where = f"{name}, tube {annotation['label']}"
             tube = scene.truth["tubes"][annotation["label"] - 1]
+            assert categories[annotation["category_id"]] == tube.get("kind", "tube"), where
             mask = coco.annToMask(annotation) == 1
             whole = coco.annToMask({**annotation, "segmentation": annotation["amodal_segmentation"]}) == 1
             assert np.array_equal(mask, scene.tube_image(annotation["label"])), where
@@ -162,6 +238,9 @@ def check_npz(dataset, export):
         assert np.abs(image[:, :2] / image[:, 2:] - expected).max() < 1e-3, name
         nodes = [node for tube in tubes for node in tube["nodes_in_world"]]
         assert np.allclose(arrays["nodes"], np.reshape(nodes, (-1, 3)), atol=1e-12)
+        assert arrays["kind"].astype(str).tolist() == [t.get("kind", "tube") for t in tubes]
+        if "normals" in arrays:
+            check_normals(arrays, scene, name)
         assert arrays["tube_of_node"].tolist() == [t["label"] for t in tubes for _ in t["nodes"]]
         lengths = np.linalg.norm(arrays["nodes"][arrays["cylinders"][:, 0]] - arrays["nodes"][arrays["cylinders"][:, 1]], axis=1)
         assert abs(lengths.sum() - sum(tube["length"] for tube in tubes)) < 1e-9
@@ -171,6 +250,18 @@ def check_npz(dataset, export):
             assert arrays["radius"][k] == tube["radius"]
             assert arrays["visible_pixels"][k] == tube["visible_pixels"]
             assert arrays["amodal_pixels"][k] == tube["amodal_pixels"]
+
+
+def check_normals(arrays, scene, where):
+    """Unit vectors that look at the scanner, up on the bin's floor."""
+    normals = arrays["normals"][scene.seen].astype(float)
+    assert np.allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-5), where
+    points = scene.xyz[scene.seen].astype(float)
+    towards = scene.truth["scanner"]["position"] - points
+    assert ((normals * towards).sum(1) > -1e-6).all(), where
+    on_floor = (scene.label[scene.seen] == 0) & (np.abs(points[:, 2]) < 1e-6)
+    assert on_floor.any() and np.allclose(normals[on_floor], [0, 0, 1]), where
+    assert np.isnan(arrays["normals"][~scene.seen]).all(), where
 
 
 def published_name(name, folder, extension):
@@ -184,7 +275,7 @@ def check_ply(dataset, export):
         header, body = data.split(b"end_header\n", 1)
         assert b"format binary_little_endian 1.0" in header
         count = int(header.split(b"element vertex ")[1].split()[0])
-        points = np.frombuffer(body, [("xyz", "<f4", 3), ("rgb", "u1", 3), ("label", "<u4")], count)
+        points = np.frombuffer(body, [("xyz", "<f4", 3), ("rgb", "u1", 3), ("label", "<i4")], count)
         of_tubes = scene.seen & (scene.label > 0)
         assert np.array_equal(points["xyz"], scene.xyz[of_tubes]), name
         assert np.array_equal(points["label"], scene.label[of_tubes]), name

@@ -15,6 +15,8 @@ struct ExportOptions {
   std::string dataset;
   std::string output;
   std::string format;
+  bool crop = false;     ///< images of the bin's window alone (bop, coco)
+  bool normals = false;  ///< with the surfaces' normals (npz)
   int jobs = 1;
   double time_limit = 600.0;  ///< seconds a scene
 };
@@ -29,7 +31,7 @@ struct ExportReport {
 };
 
 /// Exports the scenes that `output` does not have yet; each appears there whole. A data set that has grown goes on with
-/// the numbers that follow. Throws IoError, and ConfigError where the format is unknown or `output` holds something
+/// the numbers that follow. Throws IoError, and ConfigError where the format is unknown or lacks what was chosen, or `output` holds something
 /// else: another data set, another format, another version's work, or files that are no export.
 ExportReport export_dataset(const ExportOptions& options, jobs::Progress::Style progress);
 
