@@ -17,7 +17,17 @@ build() {
   cmake --build --preset "$preset" "$@"
 }
 
+# Where a package registry is reachable no test skips for want of a Python package.
+check_skips() {
+  [ -n "$environment" ] || return 0
+  ! grep -A 1 -E '(: Skipped|^skipped:)' "$1/Testing/Temporary/LastTest.log" | grep -iE 'python3|No module named' ||
+    { echo "Tests skipped although the Python environment $environment is there." >&2; return 1; }
+}
+
 scripts/install_dependencies.sh
+environment=$(scripts/python_environment.sh) ||
+  { environment=; echo "No Python packages to be had: tests that compare with them skip." >&2; }
+export PATH="${environment:+$environment/bin:}$PATH"
 cmake --preset "$preset" -DTUBEBIN_WERROR=ON
 if [ ${#kinds[@]} -eq 0 ]; then
   build
@@ -26,3 +36,4 @@ else
   build --target "${kinds[@]/%/_tests}"
   ctest --preset "$preset" --label-regex "^($(IFS='|'; echo "${kinds[*]}"))$"
 fi
+case "$preset" in release) check_skips build ;; *) check_skips "build-$preset" ;; esac
