@@ -78,9 +78,9 @@ void compare_geometry(const results::CloudToModel& input, const modeling::Modeli
     return nearest;
   };
   for (const modeling::TubeModel& tube : result.tubes)
-    for (const auto& [nodes, bridged] : tube.paths)
-      for (std::size_t k = 0; k + 1 < nodes.size(); ++k)
-        if (!bridged[k]) add_samples(nodes[k], nodes[k + 1], to_truth, score.to_truth);
+    for (const modeling::TubePath& path : tube.paths)
+      for (std::size_t k = 0; k + 1 < path.nodes.size(); ++k)
+        if (!path.bridged[k]) add_samples(path.nodes[k], path.nodes[k + 1], to_truth, score.to_truth);
   // The other way from where points say that the tube is in sight: each such point's foot on its true centreline.
   for (std::size_t k = 0; k < result.source.size(); k += 50) {
     const cloud::Label label = input.cloud.labels[result.source[k]];
