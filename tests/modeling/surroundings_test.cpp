@@ -79,7 +79,8 @@ std::vector<cloud::Point> strip(double radius, double half_width, bool is_flat, 
 PieceEvidence evidence_of(const std::vector<cloud::Point>& points, double radius) {
   TubePiece piece{.nodes = {Vec3(-0.001, 0, 0), Vec3(0.101, 0, 0)}, .radius = radius, .points = {}};
   for (std::uint32_t i = 0; i < points.size(); ++i) piece.points.push_back(i);
-  const ModelingInput input{.points = points, .world_from_sensor = Pose(Eigen::Translation3d(0.05, 0.0, 1.0))};
+  const ModelingInput input{
+      .points = points, .world_from_sensor = Pose(Eigen::Translation3d(0.05, 0.0, 1.0)), .bin = {}};
   const OcclusionTest occlusion(input, ViewProjection(input.world_from_sensor, cloud::Point(0.05f, 0, 0)), 0.0015,
                                 radius);
   return examine_piece(piece, points, occlusion);
