@@ -17,11 +17,19 @@ using testing::CommandResult;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Adds kept clouds to the runs of one scene, as a real scan with some points mislabelled.
+/// Adds the scene's cloud to the data set, and kept clouds to the runs of the scene, with some points mislabelled.
 void keep_clouds(const std::filesystem::path& folder, const std::string& scene_name, int tubes,
                  const std::vector<double>& ratios) {
   const scene::SceneRecord record = testing::synthetic_scene(scene_name, tubes, 5);
-  cloud::Cloud full = scan::scan(record.scene).cloud;
+  const cloud::Cloud full = scan::scan(record.scene).cloud;
+  const std::string bytes = cloud::format_cloud(full, cloud::CloudFormat::pcd_binary);
+  testing::write_text(folder / "dataset" / scene_name / "cloud.pcd", bytes);
+  for (const auto& run : std::filesystem::directory_iterator(folder / "results" / scene_name)) {
+    const std::string path = (run.path() / "result.json").string();
+    nlohmann::json result = nlohmann::json::parse(read_file(path));
+    result["cloud_xxh128"] = record_bytes(bytes).xxh128;
+    testing::write_text(path, result.dump(1));
+  }
   Random random(1);
   for (const double ratio : ratios) {
     cloud::Cloud filtered;

@@ -123,6 +123,9 @@ PclCloud read_with_pcl(const std::string& path) {
   pcl::PCLPointCloud2 blob;
   int version = 0;
   EXPECT_EQ(Reader().read(path, blob, cloud.origin, cloud.orientation, version), 0);
+  // Labels in PLY are int, since Open3D reads no uint; PCL's own are unsigned, and alike in their bytes.
+  for (pcl::PCLPointField& field : blob.fields)
+    if (field.name == "label") field.datatype = pcl::PCLPointField::UINT32;
   pcl::fromPCLPointCloud2(blob, cloud.points);
   return cloud;
 }
