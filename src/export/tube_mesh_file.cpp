@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/mesh.hpp"
 
@@ -35,10 +36,25 @@ double largest_distance(std::vector<Eigen::Vector3f> points) {
   return static_cast<double>(largest);
 }
 
+/// Without the vertices that no triangle has: where a joint's sphere lies within a pipe, nothing of it is kept.
+render::Mesh without_unused(const render::Mesh& mesh) {
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> places(mesh.vertices.size(), kNone);
+  render::Mesh used;
+  for (const std::uint32_t index : mesh.indices) {
+    if (places[index] == kNone) {
+      places[index] = static_cast<std::uint32_t>(used.vertices.size());
+      used.vertices.push_back(mesh.vertices[index]);
+    }
+    used.indices.push_back(places[index]);
+  }
+  return used;
+}
+
 }  // namespace
 
 TubeMeshFile tube_mesh_file(const tube::Tube& tube) {
-  const render::Mesh mesh = render::tube_mesh({tube, Pose::Identity()}, Vec3::Zero(), kFineness);
+  const render::Mesh mesh = without_unused(render::tube_mesh({tube, Pose::Identity()}, Vec3::Zero(), kFineness));
   TubeMeshFile file;
   file.ply = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment millimetres\nelement vertex {}\nproperty float x\n"

@@ -183,7 +183,8 @@ def check_model(model, info, pose, K, whole, where):
     points = model["pts"]
     assert np.allclose(points.min(0), [info[f"min_{axis}"] for axis in "xyz"], atol=1e-3), where
     assert np.allclose(np.ptp(points, 0), [info[f"size_{axis}"] for axis in "xyz"], atol=1e-3), where
-    diameter = max(np.sqrt(((points - point) ** 2).sum(1).max()) for point in points)
+    outer = points[need("scipy.spatial").ConvexHull(points).vertices]
+    diameter = max(np.sqrt(((outer - point) ** 2).sum(1).max()) for point in outer)
     assert abs(diameter - info["diameter"]) < 1e-2, where
     assert np.allclose(np.linalg.norm(model["normals"], axis=1), 1, atol=1e-5), where
     image = (points @ np.reshape(pose["cam_R_m2c"], (3, 3)).T + pose["cam_t_m2c"]) @ K.T
