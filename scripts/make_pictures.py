@@ -64,9 +64,10 @@ def font(size):
 
 
 def save(picture, name, colors=128):
-    """As a PNG of few colours, which keeps it small."""
+    """As a PNG, of few colours where these keep it small."""
     path = IMAGES / name
-    picture.convert("RGB").quantize(colors, dither=Image.Dither.NONE).save(path, optimize=True)
+    picture = picture.convert("RGB")
+    (picture.quantize(colors, dither=Image.Dither.NONE) if colors else picture).save(path, optimize=True)
     print(f"{path.relative_to(ROOT)}: {path.stat().st_size // 1000} kB")
 
 
@@ -199,7 +200,7 @@ def draw_tutorial_scene(work):
     for name in ("preview", "ground_truth"):
         picture = Image.open(folder / f"{name}.png").convert("RGB")
         picture.thumbnail((720, 480), Image.Resampling.LANCZOS)
-        save(picture, f"tutorial_{name}.png")
+        save(picture, f"tutorial_{name}.png", colors=None)
 
 
 def found(work, view):
