@@ -7,7 +7,7 @@ packages=(
   g++ cmake ninja-build ccache pkg-config
   libode-dev libembree-dev libpcl-dev libosmesa6-dev libpng-dev zlib1g-dev liblzf-dev
   libeigen3-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev libfmt-dev libxxhash-dev libarchive-dev libsleef-dev
-  libgtest-dev libgmock-dev libbenchmark-dev help2man
+  libgtest-dev libgmock-dev libbenchmark-dev help2man doxygen
   "$@"
 )
 

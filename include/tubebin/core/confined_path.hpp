@@ -43,9 +43,11 @@ class ConfinedPath {
 
 }  // namespace tubebin
 
+/// @cond
 template <>
 struct fmt::formatter<tubebin::ConfinedPath> : fmt::formatter<std::string_view> {
   auto format(const tubebin::ConfinedPath& path, fmt::format_context& context) const {
     return fmt::formatter<std::string_view>::format(path.str(), context);
   }
 };
+/// @endcond

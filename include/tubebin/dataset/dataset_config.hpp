@@ -20,7 +20,7 @@ struct OutputOptions {
 
 struct DatasetConfig {
   std::string tool_version;  ///< that makes the data set
-  std::string set = "A";     ///< scenes are called <set><tubes>/<case>
+  std::string set = "A";     ///< scenes are called `<set><tubes>/<case>`
   std::uint64_t seed = 1;
   std::vector<int> tubes = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 20};
   int cases = 20;                     ///< scenes for each number of tubes

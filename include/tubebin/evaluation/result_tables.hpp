@@ -50,7 +50,7 @@ Table group_table(const std::vector<GroupSummary>& groups);
 std::string format_results(const Evaluation& evaluation, TableFormat format,
                            const GenerationSeconds* generation = nullptr);
 
-/// A pair of clouds: one row a ground-truth segment with its match. Colours are written as #rrggbb.
+/// A pair of clouds: one row a ground-truth segment with its match. Colours are written as `#rrggbb`.
 Table matching_table(const Contingency& contingency, const Matching& matching, const PairedIds& pairs);
 
 /// The pair's matching and micro-recall in the format; `csv` is the matching alone.

@@ -43,7 +43,7 @@ std::string format_text(const Table& table);
 std::string format_markdown(const Table& table);
 /// One line of headers, one a row; exact values (RFC 4180).
 std::string format_csv(const Table& table);
-/// <table> with a <caption>; everything escaped.
+/// `<table>` with a `<caption>`; everything escaped.
 std::string format_html(const Table& table);
 
 /// For element content and attribute values.
