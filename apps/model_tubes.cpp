@@ -137,10 +137,10 @@ results::ModelConfig resolve_config(const Arguments& arguments) {
     if (value) text += fmt::format("{}: {}\n", key, *value);
   };
   if (!arguments.radii.empty()) {
-    text += fmt::format("radius: {}\nother_radii: [", arguments.radii.front());
+    config.modeling.other_radii.clear();
+    text += fmt::format("radius: {}\n", arguments.radii.front());
     for (std::size_t k = 1; k < arguments.radii.size(); ++k)
-      text += fmt::format("{}{{radius: {}}}", k > 1 ? ", " : "", arguments.radii[k]);
-    text += "]\n";
+      text += fmt::format("{}  - radius: {}\n", k == 1 ? "other_radii:\n" : "", arguments.radii[k]);
   }
   const auto set_vector = [&](const char* key, const std::vector<double>& numbers, std::size_t first) {
     if (!numbers.empty())

@@ -153,16 +153,15 @@ void label(const ModelingInput& input, const Background& background, FilteredClo
 
 }  // namespace
 
+void describe(Fields& fields, OtherRadius& other) {
+  fields.number("radius", other.radius, {1e-6, 1.0}, "m", "outer radius of more of the tubes");
+}
+
 void describe(Fields& fields, ModelingOptions& options) {
   fields.choice("method", options.method, {"centerline", "region_growing"}, "how tubes are found");
   fields.seed("seed", options.seed, "of downsampling and of RANSAC");
   fields.number("radius", options.radius, {0.0, 1.0}, "m", "outer radius of the tubes; 0: estimated from the cloud");
-  fields.list(
-      "other_radii", "where tubes of several radii are told", options.other_radii.size(),
-      [&](std::size_t size) { options.other_radii.resize(size); },
-      [&](Fields& inner, std::size_t i) {
-        inner.number("radius", options.other_radii[i].radius, {1e-6, 1.0}, "m", "outer radius of more of the tubes");
-      });
+  fields.list("other_radii", options.other_radii, "where tubes of several radii are told");
   fields.number("tube_length", options.tube_length, {0.0, 100.0}, "m",
                 "length of every tube; 0: what the tubes in sight agree on, if they do");
   fields.vector("up", options.up, {-1.0, 1.0}, "",

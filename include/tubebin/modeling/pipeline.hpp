@@ -33,6 +33,7 @@ struct ModelingOptions {
   GreedyJoiningOptions greedy_joining;
 };
 
+void describe(Fields& fields, OtherRadius& other);
 void describe(Fields& fields, ModelingOptions& options);
 
 /// Wall-clock seconds of each step.
