@@ -104,11 +104,11 @@ Background find_surroundings(ModelingInput& input, const ViewProjection& project
 
 /// Radii and pieces; of `--method region_growing`, which finds pieces of its own, a told radius alone.
 std::vector<TubeClass> find_classes(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& scan,
-                                    double noise, const ModelingOptions& options) {
+                                    const Background& background, const ModelingOptions& options) {
   const std::vector<double> radii = told_radii(options);
   if (options.method == ModelingMethod::region_growing && !radii.empty())
     return {{.radius = radii.front(), .radius_error = 0.0, .pieces = {}}};
-  return find_tube_classes(cloud, projection, scan, noise, radii);
+  return find_tube_classes(cloud, projection, scan, background.noise, background.is_known, radii);
 }
 
 /// What lies outside the box that tubes are looked for in counts as background.
@@ -195,7 +195,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   scan.add_solids(solids_of(background));
   watch.lap(result.seconds.filtering);
 
-  const std::vector<TubeClass> classes = find_classes(cloud, projection, scan, background.noise, options);
+  const std::vector<TubeClass> classes = find_classes(cloud, projection, scan, background, options);
   for (const TubeClass& found : classes) {
     result.radii.push_back(found.radius);
     result.radius_errors.push_back(found.radius_error);

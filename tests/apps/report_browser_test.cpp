@@ -31,21 +31,22 @@ void keep_clouds(const std::filesystem::path& folder, const std::string& scene_n
     testing::write_text(path, result.dump(1));
   }
   Random random(1);
-  for (const double ratio : ratios) {
-    cloud::Cloud filtered;
-    for (std::size_t i = 0; i < full.size(); ++i) {
-      if (full.labels[i] == 0 || !cloud::is_finite(full.points[i]) || random.uniform(0.0, 1.0) > ratio) continue;
-      filtered.points.push_back(full.points[i]);
-      filtered.labels.push_back(full.labels[i]);
+  for (const std::string method : {"centerline", "region_growing"})
+    for (const double ratio : ratios) {
+      cloud::Cloud filtered;
+      for (std::size_t i = 0; i < full.size(); ++i) {
+        if (full.labels[i] == 0 || !cloud::is_finite(full.points[i]) || random.uniform(0.0, 1.0) > ratio) continue;
+        filtered.points.push_back(full.points[i]);
+        filtered.labels.push_back(full.labels[i]);
+      }
+      filtered.width = static_cast<std::uint32_t>(filtered.size());
+      cloud::Cloud labeled = filtered;
+      for (std::size_t i = 0; i < labeled.size(); ++i)
+        if (labeled.points[i].x() > 0.15F) labeled.labels[i] = labeled.labels[i] % 2 == 0 ? 0 : 1;
+      const auto run = folder / "results" / scene_name / fmt::format("{}_{}", method, ratio);
+      cloud::write_cloud((run / "filtered.pcd").string(), filtered, cloud::CloudFormat::pcd_binary);
+      cloud::write_cloud((run / "labeled.pcd").string(), labeled, cloud::CloudFormat::pcd_binary);
     }
-    filtered.width = static_cast<std::uint32_t>(filtered.size());
-    cloud::Cloud labeled = filtered;
-    for (std::size_t i = 0; i < labeled.size(); ++i)
-      if (labeled.points[i].x() > 0.15F) labeled.labels[i] = labeled.labels[i] % 2 == 0 ? 0 : 1;
-    const auto run = folder / "results" / scene_name / fmt::format("centerline_{}", ratio);
-    cloud::write_cloud((run / "filtered.pcd").string(), filtered, cloud::CloudFormat::pcd_binary);
-    cloud::write_cloud((run / "labeled.pcd").string(), labeled, cloud::CloudFormat::pcd_binary);
-  }
 }
 
 std::size_t count(const std::string& text, const std::string& part) {
@@ -82,7 +83,7 @@ TEST(ReportInBrowser, OpensWithoutErrorsAndShowsEverything) {
                                 HasSubstr("id=\"table_2_centerline\""), HasSubstr("id=\"table_2_region_growing\""),
                                 HasSubstr("id=\"configuration\""), HasSubstr("Claims of Section 6.2, region_growing")));
   EXPECT_EQ(count(dom.output, "<svg"), 4U);
-  EXPECT_EQ(count(dom.output, "data:image/png;base64,"), 3U);  // the one scene whose clouds were kept
+  EXPECT_EQ(count(dom.output, "data:image/png;base64,"), 6U);  // the one scene whose clouds were kept, by two methods
   EXPECT_EQ(count(dom.output, "<section"), 6U);
 }
 

@@ -28,8 +28,13 @@ void keep_surest(std::vector<TubePiece>& pieces) {
 
 class ClassFinder {
  public:
-  ClassFinder(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion, double noise)
-      : cloud_(cloud), projection_(projection), occlusion_(occlusion), noise_(noise) {}
+  ClassFinder(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion, double noise,
+              bool background_is_known)
+      : cloud_(cloud),
+        projection_(projection),
+        occlusion_(occlusion),
+        noise_(noise),
+        background_is_known_(background_is_known) {}
 
   std::vector<TubeClass> find_told(const std::vector<double>& radii) {
     std::vector<TubeClass> classes;
@@ -120,7 +125,7 @@ class ClassFinder {
     double information = 0.0;
     for (TubePiece& piece : find_centerline_pieces(sample, segment_by_votes(sample, radius), projection_, radius)) {
       const PieceEvidence evidence = examine_piece(piece, sample.points, occlusion);
-      if (!is_tube(evidence, radius, noise_)) continue;
+      if (!background_is_known_ && !is_tube(evidence, radius, noise_)) continue;
       // Of two normal errors, the plane's is that many standard deviations.
       const double deviations = evidence.curvature / evidence.curvature_error;
       piece.evidence = 0.5 * deviations * deviations;
@@ -147,14 +152,16 @@ class ClassFinder {
   const ViewProjection& projection_;
   const OcclusionTest& occlusion_;
   double noise_;
+  bool background_is_known_;
   FilteredCloud rest_;
 };
 
 }  // namespace
 
 std::vector<TubeClass> find_tube_classes(FilteredCloud& cloud, const ViewProjection& projection,
-                                         const OcclusionTest& occlusion, double noise, std::vector<double> told) {
-  ClassFinder finder(cloud, projection, occlusion, noise);
+                                         const OcclusionTest& occlusion, double noise, bool background_is_known,
+                                         std::vector<double> told) {
+  ClassFinder finder(cloud, projection, occlusion, noise, background_is_known);
   return told.empty() ? finder.find_all() : finder.find_told(told);
 }
 

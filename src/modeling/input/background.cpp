@@ -50,7 +50,7 @@ Background find_background(const ModelingInput& input, const ViewProjection& pro
 }
 
 Background background_of_bin(const ModelingInput& input, const FilteringOptions& options) {
-  Background background{.regions = {}, .set_aside = {}, .foreground = crop_bin(input, options)};
+  Background background{.regions = {}, .set_aside = {}, .foreground = crop_bin(input, options), .is_known = true};
   auto next = background.foreground.begin();
   for (std::uint32_t i = 0; i < input.points.size(); ++i) {
     if (next != background.foreground.end() && *next == i) ++next;

@@ -14,6 +14,7 @@ struct Background {
   std::vector<FlatRegion> regions;        ///< largest first
   std::vector<std::uint32_t> set_aside;   ///< indices of the points that lie on them
   std::vector<std::uint32_t> foreground;  ///< indices of all other finite points
+  bool is_known = false;                  ///< of a known bin: what is left is tubes, as far as anybody knows
   double noise = 0.0;                     ///< metres, across the largest regions; 0 where there is none
   double spacing = 0.0;                   ///< metres between neighbouring points at their median range
 };
