@@ -108,7 +108,9 @@ TEST_F(ModelInterruption, KillOfWorkersAtAnyMoment) {
     const std::string results = folder_ / fmt::format("worker_{}", round);
     Program program = start(results);
     for (int kill_count = 0; kill_count < 6 && program.running(); ++kill_count) {
-      std::this_thread::sleep_for(std::chrono::microseconds(random_() % 60'000));
+      // The first as soon as there is a worker, so that some kill meets one however fast the machine is.
+      wait_until([&] { return !program.running() || processes_of(results).size() > 1; });
+      if (kill_count > 0) std::this_thread::sleep_for(std::chrono::microseconds(random_() % 60'000));
       for (const pid_t process : processes_of(results))
         if (process != program.process()) {
           kill(process, SIGKILL);
