@@ -19,7 +19,8 @@ BatchReport run_batch(const Batch& batch) {
                           .on_failed_attempt =
                               [&](std::size_t job, const FailedAttempt& attempt) {
                                 batch.on_failed_attempt(job, attempt);
-                                if (batch.pool.attempts_max > 1) progress.count_reject();  // else it is the job that failed
+                                if (batch.pool.attempts_max > 1)
+                                  progress.count_reject();  // else it is the job that failed
                               },
                           .on_tick = [&] { progress.show(); }};
   const PoolReport pool = run_jobs(missing, batch.pool, batch.work, events);

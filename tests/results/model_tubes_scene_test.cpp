@@ -109,8 +109,7 @@ TEST_F(ModelTubes, GoesOnWhereItStoppedAndRefusesOtherOptions) {
   const ProgramResult more = model_tubes({dataset, "--output", out, "--ratios", "0.1,0.2", "--quiet"});
   EXPECT_EQ(more.exit_code, 0) << more.error;
   EXPECT_THAT(more.out, HasSubstr("1 there before"));
-  const ProgramResult other =
-      model_tubes({dataset, "--output", out, "--ratios", "0.1", "--seed", "9", "--quiet"});
+  const ProgramResult other = model_tubes({dataset, "--output", out, "--ratios", "0.1", "--seed", "9", "--quiet"});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.error, HasSubstr("seed"));
 }
