@@ -3,7 +3,7 @@
 namespace tubebin {
 
 std::string shell_path(const std::string& path) {
-  const std::string text = path.starts_with('-') ? "./" + path : path;  // else an option to any program
+  std::string text = path.starts_with('-') ? "./" + path : path;  // else an option to any program
   constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+-=:,@%";
   if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
   std::string quoted = "'";

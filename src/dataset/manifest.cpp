@@ -48,7 +48,7 @@ std::vector<std::string> list_parts(const std::string& folder) {
 /// A new file that no other process writes to, whatever its host.
 ConfinedPath make_part(const OutputFolder& folder, const std::string& part) {
   for (int number = 0;; ++number) {
-    const ConfinedPath name = ConfinedPath(kPartsFolder) / fmt::format("{}.{}-{}.jsonl", part, process_name(), number);
+    ConfinedPath name = ConfinedPath(kPartsFolder) / fmt::format("{}.{}-{}.jsonl", part, process_name(), number);
     if (create_atomically(folder.make_entry(name), "")) return name;
   }
 }

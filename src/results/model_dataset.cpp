@@ -127,7 +127,7 @@ jobs::AttemptResult do_run(const ModelingRun& run, const Batch& batch, const Bat
 }
 
 std::string relative_dataset(const BatchOptions& options) {
-  const std::string path = fs::relative(fs::absolute(options.dataset), fs::absolute(options.results)).string();
+  std::string path = fs::relative(fs::absolute(options.dataset), fs::absolute(options.results)).string();
   if (!is_utf8(path))
     throw_io_error("{}: its path is no UTF-8 text, which {} needs; give the data set another name", options.dataset,
                    kResultsIndexFile);

@@ -160,7 +160,7 @@ class ClassFinder {
 
 std::vector<TubeClass> find_tube_classes(FilteredCloud& cloud, const ViewProjection& projection,
                                          const OcclusionTest& occlusion, double noise, bool background_is_known,
-                                         std::vector<double> told) {
+                                         const std::vector<double>& told) {
   ClassFinder finder(cloud, projection, occlusion, noise, background_is_known);
   return told.empty() ? finder.find_all() : finder.find_told(told);
 }

@@ -22,6 +22,6 @@ struct TubeClass {
 /// are of tubes.
 std::vector<TubeClass> find_tube_classes(FilteredCloud& cloud, const ViewProjection& projection,
                                          const OcclusionTest& occlusion, double noise, bool background_is_known,
-                                         std::vector<double> told);
+                                         const std::vector<double>& told);
 
 }  // namespace tubebin::modeling
