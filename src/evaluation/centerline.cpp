@@ -7,32 +7,34 @@
 namespace tubebin::evaluation {
 namespace {
 
-std::vector<Vec3> sample_piece(const CenterlinePiece& piece) {
-  const double length = (piece.end - piece.start).norm();
+std::vector<Vec3> sample_segment(const CenterlineSegment& segment) {
+  const double length = (segment.end - segment.start).norm();
   const int steps = std::max(1, static_cast<int>(std::ceil(length / kCenterlineStep)));
   std::vector<Vec3> samples;
   // Midpoints of equal parts weigh every stretch by its length, and joints are not counted twice.
-  for (int i = 0; i < steps; ++i) samples.push_back(piece.start + (piece.end - piece.start) * ((i + 0.5) / steps));
+  for (int i = 0; i < steps; ++i)
+    samples.push_back(segment.start + (segment.end - segment.start) * ((i + 0.5) / steps));
   return samples;
 }
 
-double squared_distance(const Vec3& point, const CenterlinePiece& piece) {
-  const Vec3 along = piece.end - piece.start;
+double squared_distance(const Vec3& point, const CenterlineSegment& segment) {
+  const Vec3 along = segment.end - segment.start;
   const double squared_length = along.squaredNorm();
-  const double t = squared_length > 0.0 ? std::clamp((point - piece.start).dot(along) / squared_length, 0.0, 1.0) : 0.0;
-  return (point - piece.start - t * along).squaredNorm();
+  const double t =
+      squared_length > 0.0 ? std::clamp((point - segment.start).dot(along) / squared_length, 0.0, 1.0) : 0.0;
+  return (point - segment.start - t * along).squaredNorm();
 }
 
 double distance(const Vec3& point, const Centerline& line) {
   double nearest = std::numeric_limits<double>::max();
-  for (const CenterlinePiece& piece : line) nearest = std::min(nearest, squared_distance(point, piece));
+  for (const CenterlineSegment& segment : line) nearest = std::min(nearest, squared_distance(point, segment));
   return std::sqrt(nearest);
 }
 
-/// Squared distance between the segments p + s d (0 <= s <= 1) and a piece (Ericson 2005, Section 5.1.9).
-double squared_distance(const Vec3& p, const Vec3& d, const CenterlinePiece& piece) {
-  const Vec3 e = piece.end - piece.start;
-  const Vec3 r = p - piece.start;
+/// Squared distance between the segments p + s d (0 <= s <= 1) and a segment (Ericson 2005, Section 5.1.9).
+double squared_distance(const Vec3& p, const Vec3& d, const CenterlineSegment& segment) {
+  const Vec3 e = segment.end - segment.start;
+  const Vec3 r = p - segment.start;
   const double dd = d.squaredNorm();
   const double ee = e.squaredNorm();
   const double de = d.dot(e);
@@ -49,12 +51,12 @@ double squared_distance(const Vec3& p, const Vec3& d, const CenterlinePiece& pie
 bool occludes(const Centerline& line, double radius, const Vec3& scanner, const Vec3& target) {
   const Vec3 sight = target - scanner;
   const double inverse_length = 1.0 / sight.norm();
-  return std::any_of(line.begin(), line.end(), [&](const CenterlinePiece& piece) {
-    // Most pieces are far from the line of sight: a sphere around the piece tells.
-    const Vec3 middle = 0.5 * (piece.start + piece.end);
-    const double reach = 0.5 * (piece.end - piece.start).norm() + radius;
+  return std::any_of(line.begin(), line.end(), [&](const CenterlineSegment& segment) {
+    // Most segments are far from the line of sight: a sphere around the segment tells.
+    const Vec3 middle = 0.5 * (segment.start + segment.end);
+    const double reach = 0.5 * (segment.end - segment.start).norm() + radius;
     if ((middle - scanner).cross(sight).norm() * inverse_length > reach) return false;
-    return squared_distance(scanner, sight, piece) < radius * radius;
+    return squared_distance(scanner, sight, segment) < radius * radius;
   });
 }
 
@@ -83,7 +85,7 @@ Centerline centerline(const scene::PlacedTube& tube) {
   Centerline line;
   for (const tube::Cylinder& cylinder : tube.tube.cylinders)
     line.push_back({tube.node_in_world(cylinder.node_a), tube.node_in_world(cylinder.node_b)});
-  // A node alone is a sphere: a piece of no length.
+  // A node alone is a sphere: a segment of no length.
   if (line.empty() && !tube.tube.nodes.empty()) line.push_back({tube.node_in_world(0), tube.node_in_world(0)});
   return line;
 }
@@ -95,8 +97,8 @@ std::vector<CenterlineSamples> sample_centerlines(const scene::Scene& scene) {
   for (const scene::PlacedTube& tube : scene.tubes) lines.push_back(centerline(tube));
   std::vector<CenterlineSamples> result(lines.size());
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    for (const CenterlinePiece& piece : lines[k]) {
-      for (const Vec3& point : sample_piece(piece)) {
+    for (const CenterlineSegment& segment : lines[k]) {
+      for (const Vec3& point : sample_segment(segment)) {
         const bool visible = std::ranges::any_of(scanners, [&](const Vec3& scanner) {
           for (std::size_t other = 0; other < lines.size(); ++other)
             if (other != k && occludes(lines[other], scene.tubes[other].tube.radius, scanner, point)) return false;
@@ -113,9 +115,9 @@ std::vector<CenterlineSamples> sample_centerlines(const scene::Scene& scene) {
 CenterlineError centerline_error(const Centerline& truth, const CenterlineSamples& truth_samples,
                                  const Centerline& model) {
   std::vector<double> from_model;
-  for (const CenterlinePiece& piece : model) {
-    if (piece.bridged) continue;
-    for (const Vec3& point : sample_piece(piece)) from_model.push_back(distance(point, truth));
+  for (const CenterlineSegment& segment : model) {
+    if (segment.bridged) continue;
+    for (const Vec3& point : sample_segment(segment)) from_model.push_back(distance(point, truth));
   }
   std::vector<double> from_truth;
   for (std::size_t i = 0; i < truth_samples.points.size(); ++i)

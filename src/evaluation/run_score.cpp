@@ -26,7 +26,7 @@ void add_scene_facts(TubeScore& score, const SceneTruth& truth, const std::vecto
   const auto modelled = tube_index(*score.predicted_id, model.size());
   if (!modelled) return;
   const Centerline& line = model[*modelled];
-  if (std::all_of(line.begin(), line.end(), [](const CenterlinePiece& piece) { return piece.bridged; })) return;
+  if (std::all_of(line.begin(), line.end(), [](const CenterlineSegment& segment) { return segment.bridged; })) return;
   score.centerline_error = centerline_error(truth.centerlines[*tube], truth.samples[*tube], line);
 }
 

@@ -162,8 +162,8 @@ class WorldWriter {
       out_.text("static", "1");
       for (std::size_t i = 0; i < boxes.size(); ++i)
         out_.element("link", named(kNames[i]), [&] {
-          write_part(kNames[i], at(boxes[i].center()), physics_.friction_bin, colors_[0],
-                     [&] { out_.element("box", [&] { out_.text("size", triple(boxes[i].sizes())); }); });
+          write_solid(kNames[i], at(boxes[i].center()), physics_.friction_bin, colors_[0],
+                      [&] { out_.element("box", [&] { out_.text("size", triple(boxes[i].sizes())); }); });
         });
     });
   }
@@ -177,10 +177,10 @@ class WorldWriter {
       out_.text("pose", pose_text(placed.world_from_tube));
       out_.element("link", named(name), [&] {
         write_inertial(tube);
-        for (std::size_t i = 0; i < tube.cylinders.size(); ++i) write_cylinder(tube, i, colors_[k + 1]);
-        const std::vector<int> degrees = tube.node_degrees();
-        for (std::size_t node = 0; node < degrees.size(); ++node)
-          if (degrees[node] != 1) write_joint(tube, node, colors_[k + 1]);
+        const tube::TubeSolids solids = tube::tube_solids(tube, tube.nodes);
+        for (std::size_t i = 0; i < solids.cylinders.size(); ++i)
+          write_cylinder(solids.cylinders[i], i + 1, colors_[k + 1]);
+        for (const tube::JointSphere& joint : solids.joints) write_joint(joint, colors_[k + 1]);
       });
     });
   }
@@ -199,27 +199,25 @@ class WorldWriter {
     });
   }
 
-  void write_cylinder(const tube::Tube& tube, std::size_t index, cloud::Color color) {
-    const tube::Cylinder& cylinder = tube.cylinders[index];
-    const Vec3& a = tube.nodes[static_cast<std::size_t>(cylinder.node_a)];
-    const Vec3& b = tube.nodes[static_cast<std::size_t>(cylinder.node_b)];
-    const Pose pose = make_pose(Quat::FromTwoVectors(Vec3::UnitZ(), b - a), 0.5 * (a + b));
-    write_part(fmt::format("cylinder-{}", index + 1), pose, physics_.friction_tube, color, [&] {
+  void write_cylinder(const tube::SolidCylinder& cylinder, std::size_t number, cloud::Color color) {
+    const Vec3 axis = cylinder.b - cylinder.a;
+    const Pose pose = make_pose(Quat::FromTwoVectors(Vec3::UnitZ(), axis), 0.5 * (cylinder.a + cylinder.b));
+    write_solid(fmt::format("cylinder-{}", number), pose, physics_.friction_tube, color, [&] {
       out_.element("cylinder", [&] {
-        out_.number("radius", tube.radius_of(cylinder));
-        out_.number("length", (b - a).norm());
+        out_.number("radius", cylinder.radius);
+        out_.number("length", axis.norm());
       });
     });
   }
 
-  void write_joint(const tube::Tube& tube, std::size_t node, cloud::Color color) {
-    write_part(fmt::format("sphere-{}", node + 1), at(tube.nodes[node]), physics_.friction_tube, color,
-               [&] { out_.element("sphere", [&] { out_.number("radius", tube.node_radii()[node]); }); });
+  void write_joint(const tube::JointSphere& joint, cloud::Color color) {
+    write_solid(fmt::format("sphere-{}", joint.node + 1), at(joint.center), physics_.friction_tube, color,
+                [&] { out_.element("sphere", [&] { out_.number("radius", joint.radius); }); });
   }
 
   /// The same shape to collide with and to look at.
   template <typename Shape>
-  void write_part(const std::string& name, const Pose& pose, double friction, cloud::Color color, const Shape& shape) {
+  void write_solid(const std::string& name, const Pose& pose, double friction, cloud::Color color, const Shape& shape) {
     out_.element("collision", named("collision-" + name), [&] {
       out_.text("pose", pose_text(pose));
       out_.element("geometry", shape);

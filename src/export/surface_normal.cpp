@@ -21,44 +21,34 @@ struct Nearest {
 }  // namespace
 
 SurfaceNormals::SurfaceNormals(const scene::Scene& scene) : bin_(scene.bin) {
-  for (const scene::PlacedTube& placed : scene.tubes) {
-    TubeParts parts{.wall_thickness = placed.tube.wall_thickness, .axes = {}, .free_ends = {}, .joints = {}};
-    const std::vector<double> radii = placed.tube.node_radii();
-    const std::vector<int> degrees = placed.tube.node_degrees();
-    const auto is_free = [&](int node) { return degrees[static_cast<std::size_t>(node)] == 1; };
-    for (const tube::Cylinder& cylinder : placed.tube.cylinders) {
-      const Vec3 a = placed.node_in_world(cylinder.node_a), b = placed.node_in_world(cylinder.node_b);
-      const Vec3 axis = (b - a).normalized();
-      const double radius = placed.tube.radius_of(cylinder);
-      parts.axes.push_back({a, b, radius});
-      if (is_free(cylinder.node_a)) parts.free_ends.push_back({a, -axis, radius});
-      if (is_free(cylinder.node_b)) parts.free_ends.push_back({b, axis, radius});
-    }
-    for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
-      if (!is_free(node)) parts.joints.push_back({placed.node_in_world(node), radii[static_cast<std::size_t>(node)]});
-    tubes_.push_back(std::move(parts));
-  }
+  for (const scene::PlacedTube& tube : scene.tubes) tubes_.push_back(tube.solids_in_world());
 }
 
 Vec3 SurfaceNormals::at(cloud::Label label, const Vec3& point) const {
   return label == 0 ? at_bin(point) : at_tube(tubes_.at(label - 1), point);
 }
 
-Vec3 SurfaceNormals::at_tube(const TubeParts& tube, const Vec3& point) const {
+Vec3 SurfaceNormals::at_tube(const tube::TubeSolids& tube, const Vec3& point) const {
   Nearest nearest;
-  const auto offer_wall = [&](const Vec3& from_middle, double radius) {
+  const auto offer_wall = [&](const Vec3& from_middle, const auto& solid) {
     const double distance = from_middle.norm();
-    nearest.offer(distance - radius, from_middle / distance);
-    if (tube.wall_thickness > 0.0) nearest.offer(radius - tube.wall_thickness - distance, -from_middle / distance);
+    nearest.offer(distance - solid.radius, from_middle / distance);
+    if (solid.bore_radius > 0.0) nearest.offer(solid.bore_radius - distance, -from_middle / distance);
   };
-  for (const auto& [a, b, radius] : tube.axes) {
-    const double along = (point - a).dot(b - a) / (b - a).squaredNorm();
-    if (along < 0.0 || along > 1.0) continue;
-    offer_wall(point - (a + along * (b - a)), radius);
+  const auto offer_end = [&](const Vec3& center, const Vec3& outward, double radius) {
+    if ((point - center).norm() <= radius) nearest.offer((point - center).dot(outward), outward);
+  };
+  for (const tube::SolidCylinder& cylinder : tube.cylinders) {
+    const Vec3 axis = cylinder.b - cylinder.a;
+    const double along = (point - cylinder.a).dot(axis) / axis.squaredNorm();
+    if (along >= 0.0 && along <= 1.0) offer_wall(point - (cylinder.a + along * axis), cylinder);
   }
-  for (const auto& [center, radius] : tube.joints) offer_wall(point - center, radius);
-  for (const auto& [center, normal, radius] : tube.free_ends)
-    if ((point - center).norm() <= radius) nearest.offer((point - center).dot(normal), normal);
+  for (const tube::JointSphere& joint : tube.joints) offer_wall(point - joint.center, joint);
+  for (const tube::SolidCylinder& cylinder : tube.cylinders) {
+    const Vec3 outward = (cylinder.b - cylinder.a).normalized();
+    if (cylinder.is_free_a) offer_end(cylinder.a, -outward, cylinder.radius);
+    if (cylinder.is_free_b) offer_end(cylinder.b, outward, cylinder.radius);
+  }
   return nearest.normal;
 }
 

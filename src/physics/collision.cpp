@@ -13,19 +13,19 @@ namespace {
 constexpr double kParallelSine = 0.15;
 
 /// Whether the way out through a flat end is as short as `depth`, the way out through the side (metres).
-bool is_flat_end(const Piece& piece, double parameter, double depth = 0.0) {
-  const double along = parameter * piece.length;
+bool is_flat_end(const CollisionCylinder& cylinder, double parameter, double depth = 0.0) {
+  const double along = parameter * cylinder.length;
   const double reach = std::max(depth, 0.0);
-  return (piece.flat_a && along <= reach) || (piece.flat_b && along >= piece.length - reach);
+  return (cylinder.flat_a && along <= reach) || (cylinder.flat_b && along >= cylinder.length - reach);
 }
 
-Vec3 outward_end_direction(const Piece& piece, double parameter) {
-  return parameter < 0.5 ? Vec3(-piece.direction) : piece.direction;
+Vec3 outward_end_direction(const CollisionCylinder& cylinder, double parameter) {
+  return parameter < 0.5 ? Vec3(-cylinder.direction) : cylinder.direction;
 }
 
 Vec3 project_on_box(const scene::Box& box, const Vec3& point) { return point.cwiseMax(box.min()).cwiseMin(box.max()); }
 
-/// Touch of two balls: the general case of round parts of two pieces.
+/// Touch of two balls: the general case of round parts of two cylinders.
 std::optional<Touch> touch_balls(const Vec3& p, double radius_p, const Vec3& q, double radius_q, double depth_min) {
   const Vec3 offset = q - p;
   const double distance = offset.norm();
@@ -35,9 +35,10 @@ std::optional<Touch> touch_balls(const Vec3& p, double radius_p, const Vec3& q, 
   return Touch{p + normal * (radius_p - 0.5 * depth), normal, depth};
 }
 
-/// A flat end of `piece` against the round part of `other`.
-std::optional<Touch> touch_flat_with_round(const Piece& piece, double end, const Piece& other, double depth_min) {
-  const SolidCylinder solid = piece.solid();
+/// A flat end of `cylinder` against the round part of `other`.
+std::optional<Touch> touch_flat_with_round(const CollisionCylinder& cylinder, double end,
+                                           const CollisionCylinder& other, double depth_min) {
+  const SolidCylinder solid = cylinder.solid();
   const auto project = [&](const Vec3& point) { return solid.project(point); };
   const Vec3 on_axis = other.axis.at(nearest_parameter(other.axis, project));
   const Vec3 nearest = project(on_axis);
@@ -45,19 +46,19 @@ std::optional<Touch> touch_flat_with_round(const Piece& piece, double end, const
   const double distance = offset.norm();
   const double depth = other.radius - distance;
   if (depth < depth_min) return std::nullopt;
-  const Vec3 normal = distance > 1e-9 ? Vec3(offset / distance) : outward_end_direction(piece, end);
+  const Vec3 normal = distance > 1e-9 ? Vec3(offset / distance) : outward_end_direction(cylinder, end);
   return Touch{nearest - normal * (0.5 * depth), normal, depth};
 }
 
-/// How far a piece's solid reaches along a unit direction, from its axis' start.
-double reach_along(const Piece& piece, const Vec3& direction) {
-  const double cosine = piece.direction.dot(direction);
-  return std::max(0.0, cosine * piece.length) + piece.radius * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+/// How far a cylinder's solid reaches along a unit direction, from its axis' start.
+double reach_along(const CollisionCylinder& cylinder, const Vec3& direction) {
+  const double cosine = cylinder.direction.dot(direction);
+  return std::max(0.0, cosine * cylinder.length) + cylinder.radius * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
 }
 
 /// Two flat ends that overlap by more than their rims' rounding: out the shortest way, axes apart or along either.
-Touch touch_overlapping_ends(const Piece& first, const Piece& second, const SegmentPair& closest,
-                             const Vec3& position) {
+Touch touch_overlapping_ends(const CollisionCylinder& first, const CollisionCylinder& second,
+                             const SegmentPair& closest, const Vec3& position) {
   const Vec3 between_axes = second.axis.at(closest.t) - first.axis.at(closest.s);
   const Vec3 ways[] = {between_axes.stableNormalized(), outward_end_direction(first, closest.s),
                        -outward_end_direction(second, closest.t)};
@@ -71,8 +72,8 @@ Touch touch_overlapping_ends(const Piece& first, const Piece& second, const Segm
 }
 
 /// Two flat ends, both with rounded rims.
-std::optional<Touch> touch_flat_with_flat(const Piece& first, const Piece& second, const SegmentPair& closest,
-                                          double depth_min) {
+std::optional<Touch> touch_flat_with_flat(const CollisionCylinder& first, const CollisionCylinder& second,
+                                          const SegmentPair& closest, double depth_min) {
   const SolidCylinder core_first = first.solid(kRimRounding);
   const SolidCylinder core_second = second.solid(kRimRounding);
   const auto [p, q] =
@@ -86,9 +87,9 @@ std::optional<Touch> touch_flat_with_flat(const Piece& first, const Piece& secon
   return Touch{0.5 * (p + q), offset / distance, depth};
 }
 
-/// The touch at the closest points of two pieces' axes.
-std::optional<Touch> touch_pieces(const Piece& first, const Piece& second, const SegmentPair& closest,
-                                  double depth_min) {
+/// The touch at the closest points of two cylinders' axes.
+std::optional<Touch> touch_cylinders(const CollisionCylinder& first, const CollisionCylinder& second,
+                                     const SegmentPair& closest, double depth_min) {
   const double depth_of_sides =
       first.radius + second.radius - (first.axis.at(closest.s) - second.axis.at(closest.t)).norm();
   const bool first_flat = is_flat_end(first, closest.s, depth_of_sides);
@@ -103,16 +104,17 @@ std::optional<Touch> touch_pieces(const Piece& first, const Piece& second, const
   return touch_balls(first.axis.at(closest.s), first.radius, second.axis.at(closest.t), second.radius, depth_min);
 }
 
-/// How far a place lies beyond a flat end of the piece, along its direction: negative before its start.
-double beyond_flat_ends(const Piece& piece, const Vec3& position) {
-  const double along = (position - piece.axis.a).dot(piece.direction);
-  if (piece.flat_a && along < 0.0) return along;
-  if (piece.flat_b && along > piece.length) return along - piece.length;
+/// How far a place lies beyond a flat end of the cylinder, along its direction: negative before its start.
+double beyond_flat_ends(const CollisionCylinder& cylinder, const Vec3& position) {
+  const double along = (position - cylinder.axis.a).dot(cylinder.direction);
+  if (cylinder.flat_a && along < 0.0) return along;
+  if (cylinder.flat_b && along > cylinder.length) return along - cylinder.length;
   return 0.0;
 }
 
-/// Nearly parallel pieces: touches at both ends of the stretch where they run side by side.
-void add_line_touches(const Piece& first, const Piece& second, double depth_min, std::vector<Touch>& out) {
+/// Nearly parallel cylinders: touches at both ends of the stretch where they run side by side.
+void add_line_touches(const CollisionCylinder& first, const CollisionCylinder& second, double depth_min,
+                      std::vector<Touch>& out) {
   double from = (second.axis.a - first.axis.a).dot(first.direction);
   double to = (second.axis.b - first.axis.a).dot(first.direction);
   if (from > to) std::swap(from, to);
@@ -126,13 +128,13 @@ void add_line_touches(const Piece& first, const Piece& second, double depth_min,
     // Deeper than they run side by side, they meet end to end instead.
     if (!touch || touch->depth >= to - from) continue;
     // The balls of a slanting pair reach up to 0.15 radii beyond a flat end, where nothing is.
-    for (const Piece* piece : {&first, &second})
-      touch->position -= beyond_flat_ends(*piece, touch->position) * piece->direction;
+    for (const CollisionCylinder* cylinder : {&first, &second})
+      touch->position -= beyond_flat_ends(*cylinder, touch->position) * cylinder->direction;
     if (std::abs(beyond_flat_ends(first, touch->position)) < 0.01 * first.radius) out.push_back(*touch);
   }
 }
 
-/// Neighbouring pieces find the same touch twice, at the joint between them: the deepest of a spot stays.
+/// Neighbouring cylinders find the same touch twice, at the joint between them: the deepest of a spot stays.
 void keep_deepest_of_each_spot(std::size_t begin, double spot, std::vector<Touch>& touches) {
   constexpr double kSameDirection = 0.9;  // cosine
   const auto at = [&](std::size_t i) { return touches.begin() + static_cast<std::ptrdiff_t>(i); };
@@ -188,14 +190,15 @@ double depth_in(const scene::Box& box, const Vec3& point) {
 }
 
 /// The point of a flat end that lies deepest in a box whose edge may cut into it between the rim points below.
-void add_deepest_end_touch(const scene::Box& box, const Piece& piece, const Vec3& center, std::vector<Touch>& out) {
-  const Vec3 extent = piece.radius * (1.0 - piece.direction.array().square()).max(0.0).sqrt();
+void add_deepest_end_touch(const scene::Box& box, const CollisionCylinder& cylinder, const Vec3& center,
+                           std::vector<Touch>& out) {
+  const Vec3 extent = cylinder.radius * (1.0 - cylinder.direction.array().square()).max(0.0).sqrt();
   const scene::Box end(center - extent, center + extent);
   if (!box.intersects(end)) return;
   const auto sides = ((end.min().array() < box.min().array()) || (end.max().array() > box.max().array())).count();
   if (sides < 2) return;  // before one face: the deepest is on the rim, toward the face
   static const std::vector<Eigen::Vector2d> places = disc_places();  // misses the rim's deepest by 0.1 % of the radius
-  const Vec3 u = piece.radius * piece.direction.unitOrthogonal(), v = piece.direction.cross(u);
+  const Vec3 u = cylinder.radius * cylinder.direction.unitOrthogonal(), v = cylinder.direction.cross(u);
   double deepest = 0.0;
   Vec3 at;
   for (const Eigen::Vector2d& place : places) {
@@ -219,23 +222,24 @@ constexpr double kStandingSine = 0.02;
 
 /// A flat end's rim against a box: the rim point that lies deepest and seven more around, which keep a standing
 /// tube upright.
-void add_rim_touches(const scene::Box& box, const Piece& piece, bool at_a, double depth_min, std::vector<Touch>& out) {
-  const Vec3 center = at_a ? piece.axis.a : piece.axis.b;
+void add_rim_touches(const scene::Box& box, const CollisionCylinder& cylinder, bool at_a, double depth_min,
+                     std::vector<Touch>& out) {
+  const Vec3 center = at_a ? cylinder.axis.a : cylinder.axis.b;
   const Vec3 toward = project_on_box(box, center) - center;
-  const double reach = piece.radius - depth_min;
+  const double reach = cylinder.radius - depth_min;
   if (toward.squaredNorm() > reach * reach) return;
-  const Vec3 radial = toward - toward.dot(piece.direction) * piece.direction;
+  const Vec3 radial = toward - toward.dot(cylinder.direction) * cylinder.direction;
   const bool stands = radial.squaredNorm() <= kStandingSine * kStandingSine * toward.squaredNorm();
-  const Vec3 u = stands ? steady_orthogonal(piece.direction) : Vec3(radial.normalized());
-  const Vec3 v = piece.direction.cross(u);
+  const Vec3 u = stands ? steady_orthogonal(cylinder.direction) : Vec3(radial.normalized());
+  const Vec3 v = cylinder.direction.cross(u);
   constexpr double kDiagonal = std::numbers::sqrt2 / 2.0;
   constexpr double kCircle[][2] = {{1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},
                                    {-1, 0}, {-kDiagonal, -kDiagonal}, {0, -1}, {kDiagonal, -kDiagonal}};
   for (const auto& [along_u, along_v] : kCircle) {
-    const Vec3 rim = center + piece.radius * (along_u * u + along_v * v);
+    const Vec3 rim = center + cylinder.radius * (along_u * u + along_v * v);
     if (const auto touch = touch_box_with_ball(box, rim, 0.0, depth_min)) out.push_back(*touch);
   }
-  add_deepest_end_touch(box, piece, center, out);
+  add_deepest_end_touch(box, cylinder, center, out);
 }
 
 /// Whether all of a segment lies before one and the same face of a box.
@@ -252,20 +256,22 @@ bool is_before_one_face(const scene::Box& box, const Segment& segment) {
   return faces == 1;
 }
 
-/// A piece across a box's edge, as a tube that leans over the wall.
-void add_edge_touch(const scene::Box& box, const Piece& piece, double depth_min, std::vector<Touch>& out) {
+/// A cylinder across a box's edge, as a tube that leans over the wall.
+void add_edge_touch(const scene::Box& box, const CollisionCylinder& cylinder, double depth_min,
+                    std::vector<Touch>& out) {
   // There the distance is linear along the axis: least at an end, which joints and rims stand for.
-  if (is_before_one_face(box, piece.axis)) return;
+  if (is_before_one_face(box, cylinder.axis)) return;
   const auto project = [&](const Vec3& point) { return project_on_box(box, point); };
-  const double t = nearest_parameter(piece.axis, project);
-  if (is_flat_end(piece, t)) {
-    const SolidCylinder core = piece.solid(kRimRounding);
+  const double t = nearest_parameter(cylinder.axis, project);
+  if (is_flat_end(cylinder, t)) {
+    const SolidCylinder core = cylinder.solid(kRimRounding);
     const auto [p, q] = closest_of_convex(
-        project, [&](const Vec3& x) { return core.project(x); }, piece.axis.at(t));
+        project, [&](const Vec3& x) { return core.project(x); }, cylinder.axis.at(t));
     if ((q - p).squaredNorm() < 1e-18) return;  // deeper than the rounding: the rim's touches see it
     if (const auto touch = touch_box_with_ball(box, q, kRimRounding, depth_min)) out.push_back(*touch);
   } else if (t > 0.0 && t < 1.0) {
-    if (const auto touch = touch_box_with_ball(box, piece.axis.at(t), piece.radius, depth_min)) out.push_back(*touch);
+    if (const auto touch = touch_box_with_ball(box, cylinder.axis.at(t), cylinder.radius, depth_min))
+      out.push_back(*touch);
   }
 }
 
@@ -273,8 +279,8 @@ scene::Box inflated(const scene::Box& box, double margin) {
   return {box.min() - Vec3::Constant(margin), box.max() + Vec3::Constant(margin)};
 }
 
-/// The closest points of two pieces' axes where the pieces come within `gap` (metres).
-std::optional<SegmentPair> closest_within(const Piece& first, const Piece& second, double gap) {
+/// The closest points of two cylinders' axes where the cylinders come within `gap` (metres).
+std::optional<SegmentPair> closest_within(const CollisionCylinder& first, const CollisionCylinder& second, double gap) {
   const SegmentPair closest = closest_on_segments(first.axis, second.axis);
   const double reach = first.radius + second.radius + gap;
   if ((first.axis.at(closest.s) - second.axis.at(closest.t)).squaredNorm() > reach * reach) return std::nullopt;
@@ -283,39 +289,39 @@ std::optional<SegmentPair> closest_within(const Piece& first, const Piece& secon
 
 }  // namespace
 
-void find_near_pieces(const CollisionTube& first, const CollisionTube& second, double reach,
-                      std::vector<PiecePair>& out) {
+void find_near_cylinders(const CollisionTube& first, const CollisionTube& second, double reach,
+                         std::vector<CylinderPair>& out) {
   const scene::Box reached = inflated(second.bounds, reach);
   if (!first.bounds.intersects(reached)) return;
-  for (std::uint32_t i = 0; i < first.pieces.size(); ++i) {
-    const Piece& p = first.pieces[i];
+  for (std::uint32_t i = 0; i < first.cylinders.size(); ++i) {
+    const CollisionCylinder& p = first.cylinders[i];
     if (!p.bounds.intersects(reached)) continue;
-    const scene::Box piece_reach = inflated(p.bounds, reach);
-    for (std::uint32_t j = 0; j < second.pieces.size(); ++j) {
-      const Piece& q = second.pieces[j];
-      if (!piece_reach.intersects(q.bounds)) continue;
+    const scene::Box cylinder_reach = inflated(p.bounds, reach);
+    for (std::uint32_t j = 0; j < second.cylinders.size(); ++j) {
+      const CollisionCylinder& q = second.cylinders[j];
+      if (!cylinder_reach.intersects(q.bounds)) continue;
       if (closest_within(p, q, reach)) out.push_back({i, j});
     }
   }
 }
 
 void collide(const CollisionTube& first, const CollisionTube& second, double depth_min, std::vector<Touch>& out) {
-  std::vector<PiecePair> pairs;
-  find_near_pieces(first, second, -std::min(depth_min, 0.0), pairs);
+  std::vector<CylinderPair> pairs;
+  find_near_cylinders(first, second, -std::min(depth_min, 0.0), pairs);
   collide(first, second, pairs, depth_min, out);
 }
 
-void collide(const CollisionTube& first, const CollisionTube& second, const std::vector<PiecePair>& pairs,
+void collide(const CollisionTube& first, const CollisionTube& second, const std::vector<CylinderPair>& pairs,
              double depth_min, std::vector<Touch>& out) {
   const std::size_t begin = out.size();
   const double gap = -std::min(depth_min, 0.0);
-  for (const PiecePair& pair : pairs) {
-    const Piece& p = first.pieces[pair.first];
-    const Piece& q = second.pieces[pair.second];
+  for (const CylinderPair& pair : pairs) {
+    const CollisionCylinder& p = first.cylinders[pair.first];
+    const CollisionCylinder& q = second.cylinders[pair.second];
     if (!p.bounds.intersects(inflated(q.bounds, gap))) continue;
     const auto closest = closest_within(p, q, gap);
     if (!closest) continue;
-    if (const auto touch = touch_pieces(p, q, *closest, depth_min)) out.push_back(*touch);
+    if (const auto touch = touch_cylinders(p, q, *closest, depth_min)) out.push_back(*touch);
     if (p.direction.cross(q.direction).squaredNorm() < kParallelSine * kParallelSine)
       add_line_touches(p, q, depth_min, out);
   }
@@ -329,11 +335,11 @@ void collide(const std::vector<scene::Box>& bin, const CollisionTube& tube, doub
     const std::size_t begin = out.size();
     for (const Ball& joint : tube.joints)
       if (const auto touch = touch_box_with_ball(box, joint.center, joint.radius, depth_min)) out.push_back(*touch);
-    for (const Piece& piece : tube.pieces) {
-      if (!reach.intersects(piece.bounds)) continue;
-      if (piece.flat_a) add_rim_touches(box, piece, true, depth_min, out);
-      if (piece.flat_b) add_rim_touches(box, piece, false, depth_min, out);
-      add_edge_touch(box, piece, depth_min, out);
+    for (const CollisionCylinder& cylinder : tube.cylinders) {
+      if (!reach.intersects(cylinder.bounds)) continue;
+      if (cylinder.flat_a) add_rim_touches(box, cylinder, true, depth_min, out);
+      if (cylinder.flat_b) add_rim_touches(box, cylinder, false, depth_min, out);
+      add_edge_touch(box, cylinder, depth_min, out);
     }
     keep_deepest_of_each_spot(begin, 0.5 * tube.radius, out);
   }

@@ -1,7 +1,7 @@
 /// Contacts between tubes, and between tubes and the bin, of the very surfaces that the scanner sees.
 ///
-/// A tube is the union of convex pieces, one a cylinder: the points within its radius of the cylinder's axis, cut
-/// flat at free ends. That is exactly cylinders plus joint spheres. Only where two flat ends meet each other, or a
+/// A tube is the union of convex solids, one for each of its cylinders: the points within the radius of the axis, cut flat
+/// at free ends. That is exactly cylinders plus joint spheres. Only where two flat ends meet each other, or a
 /// flat end's face a bin edge, their rims are rounded by kRimRounding.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace tubebin::physics {
 constexpr double kRimRounding = 0.001;
 
 /// One cylinder of a tube, posed in the world.
-struct Piece {
+struct CollisionCylinder {
   Segment axis;
   Vec3 direction;  ///< unit, a to b
   double length = 0.0;
@@ -36,11 +36,18 @@ struct Ball {
 
 /// A tube posed in the world.
 struct CollisionTube {
+  explicit CollisionTube(const scene::PlacedTube& tube);
+  /// To where the same tube is now, without allocation.
+  void follow(const scene::PlacedTube& tube);
+
   std::vector<Vec3> nodes;
-  std::vector<Piece> pieces;
+  std::vector<CollisionCylinder> cylinders;
   std::vector<Ball> joints;  ///< at nodes shared by two cylinders or more, and lone spheres
   double radius = 0.0;       ///< of the thickest part
   scene::Box bounds;
+
+ private:
+  tube::TubeSolids solids_;  ///< in the tube's frame
 };
 
 /// Where two bodies touch or nearly do.
@@ -50,28 +57,24 @@ struct Touch {
   double depth = 0.0;  ///< metres of interpenetration; negative: a gap
 };
 
-CollisionTube collision_tube(const scene::PlacedTube& tube);
-/// As collision_tube, into an empty one or into that of the same tube in another pose, then without allocation.
-void update_collision_tube(const scene::PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out);
-
 /// The bin as it collides: bin_boxes() with the ground below the floor, so that nothing falls through. Walls reach down into
 /// it and overlap at the corners, so that the shortest way out of one never leads into another.
 std::vector<scene::Box> collision_boxes(const scene::Bin& bin);
 
-/// Indices of a piece of one tube and of a piece of another.
-struct PiecePair {
+/// Indices of a cylinder of one tube and of a cylinder of another.
+struct CylinderPair {
   std::uint32_t first = 0;
   std::uint32_t second = 0;
 };
 
-/// Appends the pairs of pieces that come within `reach` (metres).
-void find_near_pieces(const CollisionTube& first, const CollisionTube& second, double reach,
-                      std::vector<PiecePair>& out);
+/// Appends the pairs of cylinders that come within `reach` (metres).
+void find_near_cylinders(const CollisionTube& first, const CollisionTube& second, double reach,
+                         std::vector<CylinderPair>& out);
 
 /// Appends the touches of two tubes with depth >= `depth_min` (metres; negative to find gaps too).
 void collide(const CollisionTube& first, const CollisionTube& second, double depth_min, std::vector<Touch>& out);
-/// As above, looking at these pairs of pieces alone.
-void collide(const CollisionTube& first, const CollisionTube& second, const std::vector<PiecePair>& pairs,
+/// As above, looking at these pairs of cylinders alone.
+void collide(const CollisionTube& first, const CollisionTube& second, const std::vector<CylinderPair>& pairs,
              double depth_min, std::vector<Touch>& out);
 
 /// Appends the touches of the bin (first) and a tube (second) with depth >= `depth_min`.

@@ -2,60 +2,45 @@
 
 namespace tubebin::physics {
 
-SolidCylinder Piece::solid(double eroded_by) const {
+SolidCylinder CollisionCylinder::solid(double eroded_by) const {
   const double from = flat_a ? eroded_by : 0.0;
   const double to = length - (flat_b ? eroded_by : 0.0);
   return {axis.a + from * direction, direction, std::max(to - from, 0.0), std::max(radius - eroded_by, 0.0)};
 }
 
-namespace {
-
-/// What does not depend on the pose, and room for what does.
-void begin_parts(const tube::Tube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
-  const std::vector<double> radii = tube.node_radii();
-  out.radius = tube.radius_max();
-  out.nodes.resize(tube.nodes.size());
-  out.pieces.resize(tube.cylinders.size());
-  for (std::size_t i = 0; i < tube.nodes.size(); ++i)
-    if (node_degrees[i] != 1) out.joints.push_back({tube.nodes[i], radii[i]});
+CollisionTube::CollisionTube(const scene::PlacedTube& tube) : solids_(tube::tube_solids(tube.tube, tube.tube.nodes)) {
+  nodes.resize(tube.tube.nodes.size());
+  radius = tube.tube.radius_max();
+  for (const tube::JointSphere& joint : solids_.joints) joints.push_back({joint.center, joint.radius});
+  for (const tube::SolidCylinder& cylinder : solids_.cylinders) {
+    CollisionCylinder& posed = cylinders.emplace_back();
+    posed.radius = cylinder.radius;
+    posed.flat_a = cylinder.is_free_a;
+    posed.flat_b = cylinder.is_free_b;
+  }
+  follow(tube);
 }
 
-}  // namespace
-
-void update_collision_tube(const scene::PlacedTube& tube, const std::vector<int>& node_degrees, CollisionTube& out) {
-  if (out.radius == 0.0) begin_parts(tube.tube, node_degrees, out);
-  out.bounds.setEmpty();
-  auto joint = out.joints.begin();
-  for (std::size_t i = 0; i < out.nodes.size(); ++i) {
-    out.nodes[i] = tube.world_from_tube * tube.tube.nodes[i];
-    if (node_degrees[i] == 1) continue;
-    const Vec3 margin = Vec3::Constant(joint->radius);
-    joint->center = out.nodes[i];
-    out.bounds.extend(scene::Box(joint->center - margin, joint->center + margin));
-    ++joint;
+void CollisionTube::follow(const scene::PlacedTube& tube) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = tube.world_from_tube * tube.tube.nodes[i];
+  bounds.setEmpty();
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const Vec3 margin = Vec3::Constant(joints[i].radius);
+    joints[i].center = nodes[static_cast<std::size_t>(solids_.joints[i].node)];
+    bounds.extend(scene::Box(joints[i].center - margin, joints[i].center + margin));
   }
-  for (std::size_t i = 0; i < out.pieces.size(); ++i) {
-    const tube::Cylinder& cylinder = tube.tube.cylinders[i];
-    Piece& piece = out.pieces[i];
-    const auto a = static_cast<std::size_t>(cylinder.node_a), b = static_cast<std::size_t>(cylinder.node_b);
-    piece.axis = {out.nodes[a], out.nodes[b]};
-    piece.direction = piece.axis.b - piece.axis.a;
-    piece.length = piece.direction.norm();
-    piece.direction /= piece.length;
-    piece.radius = tube.tube.radius_of(cylinder);
-    const Vec3 margin = Vec3::Constant(piece.radius);
-    piece.flat_a = node_degrees[a] == 1;
-    piece.flat_b = node_degrees[b] == 1;
-    piece.bounds =
-        scene::Box(piece.axis.a.cwiseMin(piece.axis.b) - margin, piece.axis.a.cwiseMax(piece.axis.b) + margin);
-    out.bounds.extend(piece.bounds);
+  for (std::size_t i = 0; i < cylinders.size(); ++i) {
+    CollisionCylinder& cylinder = cylinders[i];
+    cylinder.axis = {nodes[static_cast<std::size_t>(solids_.cylinders[i].node_a)],
+                     nodes[static_cast<std::size_t>(solids_.cylinders[i].node_b)]};
+    cylinder.direction = cylinder.axis.b - cylinder.axis.a;
+    cylinder.length = cylinder.direction.norm();
+    cylinder.direction /= cylinder.length;
+    const Vec3 margin = Vec3::Constant(cylinder.radius);
+    cylinder.bounds = scene::Box(cylinder.axis.a.cwiseMin(cylinder.axis.b) - margin,
+                                 cylinder.axis.a.cwiseMax(cylinder.axis.b) + margin);
+    bounds.extend(cylinder.bounds);
   }
-}
-
-CollisionTube collision_tube(const scene::PlacedTube& tube) {
-  CollisionTube out;
-  update_collision_tube(tube, tube.tube.node_degrees(), out);
-  return out;
 }
 
 std::vector<scene::Box> collision_boxes(const scene::Bin& bin) {
@@ -72,7 +57,7 @@ std::vector<scene::Box> collision_boxes(const scene::Bin& bin) {
 std::vector<scene::Contact> find_contacts(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin,
                                           double depth_min) {
   std::vector<CollisionTube> shapes;
-  for (const scene::PlacedTube& tube : tubes) shapes.push_back(collision_tube(tube));
+  for (const scene::PlacedTube& tube : tubes) shapes.emplace_back(tube);
   const std::vector<scene::Box> boxes = collision_boxes(bin);
   std::vector<scene::Contact> contacts;
   std::vector<Touch> touches;

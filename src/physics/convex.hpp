@@ -1,4 +1,4 @@
-/// Closest points of the convex pieces that tubes and bins are made of. World frame, metres.
+/// Closest points of the convex solids that tubes and bins are made of. World frame, metres.
 #pragma once
 
 #include <utility>

@@ -76,7 +76,7 @@ class Drop {
 
   static double top_of(const std::vector<scene::PlacedTube>& tubes) {
     double top = 0.0;
-    for (const scene::PlacedTube& tube : tubes) top = std::max(top, collision_tube(tube).bounds.max().z());
+    for (const scene::PlacedTube& tube : tubes) top = std::max(top, CollisionTube(tube).bounds.max().z());
     return top;
   }
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "physics/near_pieces.hpp"
+#include "physics/near_cylinders.hpp"
 #include "physics/warm_start.hpp"
 
 namespace tubebin::physics {
@@ -45,9 +45,8 @@ struct RigidWorld::Impl {
   std::vector<double> inverse_masses;             ///< 1/kg
   std::vector<Eigen::Matrix3d> inverse_inertias;  ///< about the centre of mass, tube frame
   std::vector<Vec3> centers;                      ///< of mass, tube frame
-  std::vector<std::vector<int>> degrees;
   std::vector<CollisionTube> shapes;
-  NearPieces near_pieces;
+  NearCylinders near_cylinders;
   std::vector<Touch> touches;
   std::vector<StepContact> contacts;  ///< of the last step
 
@@ -61,8 +60,7 @@ struct RigidWorld::Impl {
     inverse_masses.push_back(1.0 / properties.mass);
     inverse_inertias.push_back(properties.inertia.inverse());
     centers.push_back(properties.center);
-    degrees.push_back(tube.tube.node_degrees());
-    shapes.push_back(collision_tube(tube));
+    shapes.emplace_back(tube);
   }
 
   static void set_pose(dBodyID body, const Pose& world_from_tube, const Vec3& center_in_tube) {
@@ -96,12 +94,12 @@ struct RigidWorld::Impl {
     };
     std::vector<double> margins;
     for (std::size_t i = 0; i < shapes.size(); ++i) margins.push_back(margin_of(i, time_step));
-    near_pieces.follow(shapes, margins);
+    near_cylinders.follow(shapes, margins);
     for (std::size_t j = 0; j < shapes.size(); ++j) {
       collide(boxes, shapes[j], -margins[j], touches);
       append(kBinBody, j);
-      for (const NearTube& near : near_pieces.near(j)) {
-        collide(shapes[near.first], shapes[j], near.pieces, -std::max(margins[near.first], margins[j]), touches);
+      for (const NearTube& near : near_cylinders.near(j)) {
+        collide(shapes[near.first], shapes[j], near.cylinders, -std::max(margins[near.first], margins[j]), touches);
         append(near.first, j);
       }
     }
@@ -179,7 +177,7 @@ void RigidWorld::step(double time_step) {
   for (std::size_t i = 0; i < impl_->bodies.size(); ++i) {
     impl_->limit_speed(impl_->bodies[i]);
     impl_->read_pose(i);
-    update_collision_tube(impl_->tubes[i], impl_->degrees[i], impl_->shapes[i]);
+    impl_->shapes[i].follow(impl_->tubes[i]);
   }
 }
 
@@ -201,7 +199,7 @@ void RigidWorld::put(std::size_t tube, const Pose& world_from_tube) {
   impl_->set_pose(impl_->bodies[tube], world_from_tube, impl_->centers[tube]);
   dBodySetLinearVel(impl_->bodies[tube], 0, 0, 0);
   dBodySetAngularVel(impl_->bodies[tube], 0, 0, 0);
-  update_collision_tube(impl_->tubes[tube], impl_->degrees[tube], impl_->shapes[tube]);
+  impl_->shapes[tube].follow(impl_->tubes[tube]);
 }
 
 const std::vector<scene::PlacedTube>& RigidWorld::tubes() const { return impl_->tubes; }

@@ -45,9 +45,9 @@ bool overlaps(const CollisionTube& shape, const std::vector<CollisionTube>& plac
 }
 
 CollisionTube moved(CollisionTube shape, const Vec3& by) {
-  for (Piece& piece : shape.pieces) {
-    piece.axis = {piece.axis.a + by, piece.axis.b + by};
-    piece.bounds.translate(by);
+  for (CollisionCylinder& cylinder : shape.cylinders) {
+    cylinder.axis = {cylinder.axis.a + by, cylinder.axis.b + by};
+    cylinder.bounds.translate(by);
   }
   for (Ball& joint : shape.joints) joint.center += by;
   shape.bounds.translate(by);
@@ -79,7 +79,7 @@ Pose lowest_free_pose(const tube::Tube& tube, const Quat& rotation, const std::v
     const double x = random.uniform(-room.x(), room.x());
     const double y = random.uniform(-room.y(), room.y());
     const Vec3 start(x - bounds.center().x(), y - bounds.center().y(), bin.height + clearance - bounds.min().z());
-    const CollisionTube shape = collision_tube({tube, make_pose(rotation, start)});
+    const CollisionTube shape({tube, make_pose(rotation, start)});
     const auto raised = raised_until_free(shape, placed, clearance, top_max);
     if (!raised) continue;
     top_max = raised->first.bounds.max().z();
@@ -98,7 +98,7 @@ std::optional<std::vector<scene::PlacedTube>> spawn(const std::vector<tube::Tube
     const std::optional<Quat> rotation = fitting_rotation(tube, bin, options.spawn_clearance, random);
     if (!rotation) return std::nullopt;
     spawned.push_back({tube, lowest_free_pose(tube, *rotation, placed, bin, options, random)});
-    placed.push_back(collision_tube(spawned.back()));
+    placed.emplace_back(spawned.back());
   }
   return spawned;
 }
@@ -107,7 +107,7 @@ Pose spawn_again(std::size_t tube, const std::vector<scene::PlacedTube>& tubes, 
                  const PhysicsOptions& options, Random& random) {
   std::vector<CollisionTube> others;
   for (std::size_t i = 0; i < tubes.size(); ++i)
-    if (i != tube) others.push_back(collision_tube(tubes[i]));
+    if (i != tube) others.emplace_back(tubes[i]);
   const std::optional<Quat> rotation = fitting_rotation(tubes[tube].tube, bin, options.spawn_clearance, random);
   return lowest_free_pose(tubes[tube].tube, *rotation, others, bin, options, random);
 }

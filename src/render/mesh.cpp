@@ -198,32 +198,20 @@ std::vector<Vec3> arms_in_world(const scene::PlacedTube& placed, int node,
   return arms;
 }
 
-void add_pipes(const scene::PlacedTube& placed, MeshBuilder& builder) {
-  const tube::Tube& tube = placed.tube;
-  const std::vector<double> radii = tube.node_radii();
-  for (std::size_t i = 0; i < tube.cylinders.size(); ++i) {
-    const tube::Cylinder& cylinder = tube.cylinders[i];
-    const double radius = tube.radius_of(cylinder);
-    builder.add_pipe(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b), radius,
-                     radius - tube.wall_thickness, arms_in_world(placed, cylinder.node_a, i),
-                     arms_in_world(placed, cylinder.node_b, i));
+void add_pipes(const scene::PlacedTube& placed, const tube::TubeSolids& solids, MeshBuilder& builder) {
+  for (std::size_t i = 0; i < solids.cylinders.size(); ++i) {
+    const tube::SolidCylinder& pipe = solids.cylinders[i];
+    builder.add_pipe(pipe.a, pipe.b, pipe.radius, pipe.bore_radius, arms_in_world(placed, pipe.node_a, i),
+                     arms_in_world(placed, pipe.node_b, i));
   }
-  for (int node = 0; node < static_cast<int>(tube.nodes.size()); ++node) {
-    const std::vector<Vec3> arms = arms_in_world(placed, node);
-    const double radius = radii[static_cast<std::size_t>(node)];
-    if (arms.size() > 1) builder.add_pipe_joint(placed.node_in_world(node), radius, radius - tube.wall_thickness, arms);
-  }
+  for (const tube::JointSphere& joint : solids.joints)
+    builder.add_pipe_joint(joint.center, joint.radius, joint.bore_radius, arms_in_world(placed, joint.node));
 }
 
-void add_solids(const scene::PlacedTube& placed, const std::vector<int>& degrees, MeshBuilder& builder) {
-  const tube::Tube& tube = placed.tube;
-  for (const tube::Cylinder& cylinder : tube.cylinders)
-    builder.add_cylinder(placed.node_in_world(cylinder.node_a), placed.node_in_world(cylinder.node_b),
-                         tube.radius_of(cylinder));
-  const std::vector<double> radii = tube.node_radii();
-  for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
-    if (const auto i = static_cast<std::size_t>(node); degrees[i] != 1)
-      builder.add_sphere(placed.node_in_world(node), radii[i]);
+void add_solids(const tube::TubeSolids& solids, MeshBuilder& builder) {
+  for (const tube::SolidCylinder& cylinder : solids.cylinders)
+    builder.add_cylinder(cylinder.a, cylinder.b, cylinder.radius);
+  for (const tube::JointSphere& joint : solids.joints) builder.add_sphere(joint.center, joint.radius);
 }
 
 }  // namespace
@@ -231,10 +219,12 @@ void add_solids(const scene::PlacedTube& placed, const std::vector<int>& degrees
 Mesh tube_mesh(const scene::PlacedTube& placed, const Vec3& origin, const Fineness& fineness) {
   Mesh mesh;
   MeshBuilder builder(mesh, origin, fineness);
-  const std::vector<int> degrees = placed.tube.node_degrees();
-  const bool is_open = placed.tube.wall_thickness > 0.0 && std::ranges::find(degrees, 1) != degrees.end();
-  if (is_open) add_pipes(placed, builder);
-  else add_solids(placed, degrees, builder);
+  const tube::TubeSolids solids = placed.solids_in_world();
+  const bool is_open = std::ranges::any_of(solids.cylinders, [](const tube::SolidCylinder& cylinder) {
+    return cylinder.bore_radius > 0.0 && (cylinder.is_free_a || cylinder.is_free_b);
+  });
+  if (is_open) add_pipes(placed, solids, builder);
+  else add_solids(solids, builder);
   return mesh;
 }
 

@@ -16,7 +16,7 @@ struct Labelled {
   double bore_radius = 0.0;  ///< metres; 0: the solid has no bore
 };
 
-/// A tube's body is the union of its solids without the union of their bores, which have the same axes and planes.
+/// Tubes by tube::TubeSolids, the bin by scene::bin_boxes.
 struct SceneSolids {
   std::vector<Labelled<SolidCylinder>> cylinders;
   std::vector<Labelled<SolidSphere>> spheres;  ///< where two or more cylinders meet, and nodes alone

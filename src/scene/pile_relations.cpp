@@ -7,29 +7,29 @@
 namespace tubebin::scene {
 namespace {
 
-/// A tube without its outermost kGrazing, as convex pieces.
+/// A tube without its outermost kGrazing.
 struct Core {
-  std::vector<ConvexPiece> pieces;
+  std::vector<ConvexSolid> solids;
   Box bounds;
 };
 
+double eroded_of(double radius) { return std::min(kGrazing, 0.25 * radius); }
+
 Core core_of(const PlacedTube& placed) {
-  const tube::Tube& tube = placed.tube;
-  const auto eroded_of = [](double radius) { return std::min(kGrazing, 0.25 * radius); };
-  const std::vector<int> degrees = tube.node_degrees();
-  const auto is_free = [&](int node) { return degrees[static_cast<std::size_t>(node)] == 1; };
+  const tube::TubeSolids tube = placed.solids_in_world();
   Core core;
-  for (const tube::Cylinder& cylinder : tube.cylinders) {
-    const Vec3 a = placed.node_in_world(cylinder.node_a), b = placed.node_in_world(cylinder.node_b);
-    const double eroded = eroded_of(tube.radius_of(cylinder)), radius = tube.radius_of(cylinder) - eroded;
-    const Vec3 cut = std::min(eroded / (b - a).norm(), 0.25) * (b - a);
-    const bool free_a = is_free(cylinder.node_a), free_b = is_free(cylinder.node_b);
-    core.pieces.emplace_back(free_a ? Vec3(a + cut) : a, free_b ? Vec3(b - cut) : b, radius, free_a, free_b);
+  for (const tube::SolidCylinder& cylinder : tube.cylinders) {
+    const double eroded = eroded_of(cylinder.radius);
+    const Vec3 axis = cylinder.b - cylinder.a, cut = std::min(eroded / axis.norm(), 0.25) * axis;
+    core.solids.emplace_back(cylinder.is_free_a ? Vec3(cylinder.a + cut) : cylinder.a,
+                             cylinder.is_free_b ? Vec3(cylinder.b - cut) : cylinder.b, cylinder.radius - eroded,
+                             cylinder.is_free_a, cylinder.is_free_b);
   }
-  for (int node = 0; node < static_cast<int>(degrees.size()); ++node)
-    if (degrees[static_cast<std::size_t>(node)] == 0)
-      core.pieces.emplace_back(placed.node_in_world(node), tube.radius - eroded_of(tube.radius));
-  for (const ConvexPiece& piece : core.pieces) core.bounds.extend(piece.bounds());
+  // Joints lie within the rounded ends of their cylinders; a sphere alone has none.
+  if (tube.cylinders.empty())
+    for (const tube::JointSphere& ball : tube.joints)
+      core.solids.emplace_back(ball.center, ball.radius - eroded_of(ball.radius));
+  for (const ConvexSolid& solid : core.solids) core.bounds.extend(solid.bounds());
   return core;
 }
 
@@ -46,10 +46,10 @@ struct Order {
 Order order_of(const Core& first, const Core& second) {
   Order order;
   if (!overlap_in_plan(first.bounds, second.bounds)) return order;
-  for (const ConvexPiece& a : first.pieces) {
+  for (const ConvexSolid& a : first.solids) {
     const Box bounds = a.bounds();
     if (!overlap_in_plan(bounds, second.bounds)) continue;
-    for (const ConvexPiece& b : second.pieces) {
+    for (const ConvexSolid& b : second.solids) {
       if (!overlap_in_plan(bounds, b.bounds())) continue;
       const auto height = height_above(a, b);
       if (!height) continue;

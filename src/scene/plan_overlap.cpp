@@ -44,7 +44,7 @@ std::optional<double> height_in(const Edge& edge, const Corner& corner) {
 
 }  // namespace
 
-Vec3 ConvexPiece::farthest(const Vec2& direction) const {
+Vec3 ConvexSolid::farthest(const Vec2& direction) const {
   const Vec3 d = Vec3(direction.x(), direction.y(), 0.0).normalized();
   const auto farthest_at = [&](int end) -> Vec3 {
     if (!flat_[end]) return ends_[end] + radius_ * d;
@@ -56,7 +56,7 @@ Vec3 ConvexPiece::farthest(const Vec2& direction) const {
   return a.dot(d) >= b.dot(d) ? a : b;
 }
 
-Eigen::AlignedBox3d ConvexPiece::bounds() const {
+Eigen::AlignedBox3d ConvexSolid::bounds() const {
   const Vec3 reach = Vec3::Constant(radius_);
   return {ends_[0].cwiseMin(ends_[1]) - reach, ends_[0].cwiseMax(ends_[1]) + reach};
 }
@@ -64,7 +64,7 @@ Eigen::AlignedBox3d ConvexPiece::bounds() const {
 // Gilbert, Johnson and Keerthi 1988 in two dimensions: the plan views overlap where their Minkowski difference holds
 // the origin. Corners of it are added in the direction of the origin until three of them enclose it or one proves that
 // none can.
-std::optional<double> height_above(const ConvexPiece& first, const ConvexPiece& second) {
+std::optional<double> height_above(const ConvexSolid& first, const ConvexSolid& second) {
   constexpr int kIterations = 64;
   constexpr double kAtOrigin = 1e-12;  // metres
   const auto corner = [&](const Vec2& direction) {

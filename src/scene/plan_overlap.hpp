@@ -8,13 +8,13 @@
 namespace tubebin::scene {
 
 /// The points within a radius of a segment, cut flat across it at either end on request. World frame, metres.
-class ConvexPiece {
+class ConvexSolid {
  public:
   /// A segment of two different points.
-  ConvexPiece(const Vec3& a, const Vec3& b, double radius, bool flat_a, bool flat_b)
+  ConvexSolid(const Vec3& a, const Vec3& b, double radius, bool flat_a, bool flat_b)
       : ends_{a, b}, axis_((b - a).normalized()), radius_(radius), flat_{flat_a, flat_b} {}
   /// A ball.
-  ConvexPiece(const Vec3& center, double radius) : ends_{center, center}, axis_(Vec3::Zero()), radius_(radius) {}
+  ConvexSolid(const Vec3& center, double radius) : ends_{center, center}, axis_(Vec3::Zero()), radius_(radius) {}
 
   /// The point that is farthest along a horizontal direction (not zero).
   Vec3 farthest(const Eigen::Vector2d& direction) const;
@@ -30,6 +30,6 @@ class ConvexPiece {
 
 /// Where a vertical line meets both: how much higher than `first` it passes `second`, metres. Nothing where no vertical
 /// line does. Of two solids that do not intersect the sign is the same for all lines.
-std::optional<double> height_above(const ConvexPiece& first, const ConvexPiece& second);
+std::optional<double> height_above(const ConvexSolid& first, const ConvexSolid& second);
 
 }  // namespace tubebin::scene

@@ -14,6 +14,12 @@ std::vector<Box> bin_boxes(const Bin& bin) {
           Box(Vec3(-x, -y - wall, 0.0), Vec3(x, -y, bin.height)), Box(Vec3(-x, y, 0.0), Vec3(x, y + wall, bin.height))};
 }
 
+tube::TubeSolids PlacedTube::solids_in_world() const {
+  std::vector<Vec3> nodes;
+  for (const Vec3& node : tube.nodes) nodes.push_back(world_from_tube * node);
+  return tube::tube_solids(tube, nodes);
+}
+
 Scene seen_from(const Scene& scene, std::size_t source) {
   return {.bin = scene.bin,
           .scanner = source == 0 ? scene.scanner : scene.further_scanners.at(source - 1),

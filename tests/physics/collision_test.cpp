@@ -67,7 +67,7 @@ scene::PlacedTube straight(const Vec3& a, const Vec3& b, double radius = 0.0125)
 
 std::vector<Touch> touches_of(const scene::PlacedTube& a, const scene::PlacedTube& b, double depth_min = 0.0) {
   std::vector<Touch> touches;
-  collide(collision_tube(a), collision_tube(b), depth_min, touches);
+  collide(CollisionTube(a), CollisionTube(b), depth_min, touches);
   return touches;
 }
 
@@ -151,7 +151,7 @@ TEST(Collision, GapsToTheBinMatchTheSampledSurface) {
     const Vec3 place(random.uniform(-0.3, 0.3), random.uniform(-0.2, 0.2), random.uniform(0.0, 0.3));
     const scene::PlacedTube tube{tube::generate_tubes(1, options, random).front(), make_pose(random.rotation(), place)};
     std::vector<Touch> touches;
-    collide(scene::bin_boxes(bin), collision_tube(tube), -0.01, touches);
+    collide(scene::bin_boxes(bin), CollisionTube(tube), -0.01, touches);
     if (touches.empty()) continue;
     double depth = -1.0;
     for (const Touch& touch : touches) depth = std::max(depth, touch.depth);
@@ -225,7 +225,7 @@ TEST(Collision, AWallsEdgeThatCutsIntoARimTouchesIt) {
           sampled = std::max(sampled, std::min((p - box.min()).minCoeff(), (box.max() - p).minCoeff()));
     ASSERT_GT(sampled, 0.001);
     std::vector<Touch> touches;
-    collide(collision_boxes(bin), collision_tube(tube), 0.0, touches);
+    collide(collision_boxes(bin), CollisionTube(tube), 0.0, touches);
     double deepest = 0.0;
     for (const Touch& touch : touches) deepest = std::max(deepest, touch.depth);
     // A side's touch counts its depth from the edge, not from a face, which makes it less.
@@ -238,7 +238,7 @@ TEST(Collision, AnEndThatSinksIntoTheWallAtTheFloorIsPushedUpAndInside) {
   const double height = 0.0125 - 0.001;  // its lowest rim point is below the floor and within the wall
   const scene::PlacedTube tube = straight({0, 0, height}, {0, 0.5 * bin.width + 0.003, height});
   std::vector<Touch> touches;
-  collide(collision_boxes(bin), collision_tube(tube), 0.0, touches);
+  collide(collision_boxes(bin), CollisionTube(tube), 0.0, touches);
   ASSERT_FALSE(touches.empty());
   for (const Touch& touch : touches) {
     EXPECT_GT(touch.normal.z(), -1e-9);
@@ -251,7 +251,7 @@ TEST(Collision, ATubeOnTheWallsRimIsHeldByItsEdge) {
   const double top = bin.height + 0.0125 - 0.0001;
   const scene::PlacedTube tube = straight({bin.length / 2 - 0.2, 0, top}, {bin.length / 2 + 0.2, 0, top});
   std::vector<Touch> touches;
-  collide(collision_boxes(bin), collision_tube(tube), 0.0, touches);
+  collide(collision_boxes(bin), CollisionTube(tube), 0.0, touches);
   ASSERT_FALSE(touches.empty());
   for (const Touch& touch : touches) {
     EXPECT_NEAR(touch.depth, 0.0001, 1e-9);

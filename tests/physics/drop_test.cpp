@@ -94,7 +94,7 @@ TEST(Spawn, IsAboveTheRimBetweenTheWallsAndFreeOfOverlap) {
   const auto tubes = spawn(tube::generate_tubes(20, {}, random), bin, options, random);
   ASSERT_TRUE(tubes);
   for (const scene::PlacedTube& tube : *tubes) {
-    const scene::Box bounds = collision_tube(tube).bounds;
+    const scene::Box bounds = CollisionTube(tube).bounds;
     EXPECT_GE(bounds.min().z(), bin.height);
     EXPECT_GE(bounds.min().x(), -bin.length / 2);
     EXPECT_LE(bounds.max().x(), bin.length / 2);

@@ -27,13 +27,13 @@ scene::PlacedTube bar(const Vec3& a, const Vec3& b) { return polyline({a, b}); }
 
 /// Deepest that the tube runs into the other while it is raised by half a metre, metres.
 double depth_while_lifted(const scene::PlacedTube& tube, const scene::PlacedTube& other) {
-  const CollisionTube standing = collision_tube(other);
+  const CollisionTube standing(other);
   scene::PlacedTube raised = tube;
   double deepest = 0.0;
   std::vector<Touch> touches;
   for (int step = 0; step <= 1000; ++step) {
     touches.clear();
-    collide(collision_tube(raised), standing, 1e-3, touches);
+    collide(CollisionTube(raised), standing, 1e-3, touches);
     for (const Touch& touch : touches) deepest = std::max(deepest, touch.depth);
     raised.world_from_tube.pretranslate(Vec3(0, 0, 0.0005));
   }

@@ -23,8 +23,9 @@ StepContact unsolved(StepContact contact) {
 }
 
 std::vector<StepContact> started(const std::vector<StepContact>& before, std::vector<StepContact> now) {
-  std::vector<CollisionTube> tubes(3);
-  for (CollisionTube& tube : tubes) tube.radius = 0.012;
+  scene::PlacedTube tube;
+  tube.tube.radius = 0.012;
+  const std::vector<CollisionTube> tubes(3, CollisionTube(tube));
   warm_start(before, 0.5, tubes, now);
   return now;
 }

@@ -98,7 +98,7 @@ inline nlohmann::json model_json(const scene::SceneRecord& scene) {
   nlohmann::json tubes = nlohmann::json::array();
   for (const scene::PlacedTube& tube : scene.scene.tubes) {
     nlohmann::json cylinders = nlohmann::json::array();
-    for (const evaluation::CenterlinePiece& piece : evaluation::centerline(tube))
+    for (const evaluation::CenterlineSegment& piece : evaluation::centerline(tube))
       cylinders.push_back({{"start", {piece.start.x(), piece.start.y(), piece.start.z() + 0.0004}},
                            {"end", {piece.end.x(), piece.end.y(), piece.end.z() + 0.0004}},
                            {"radius", tube.tube.radius}});

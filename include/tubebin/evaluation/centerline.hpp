@@ -7,22 +7,22 @@
 
 namespace tubebin::evaluation {
 
-/// A straight piece of a centreline, metres, world frame.
-struct CenterlinePiece {
+/// A straight segment of a centreline, metres, world frame.
+struct CenterlineSegment {
   Vec3 start;
   Vec3 end;
   bool bridged = false;  ///< modelled over a stretch that the scanner could not see
 };
 
 /// The axes of a tube's cylinders; chains, trees and loops alike.
-using Centerline = std::vector<CenterlinePiece>;
+using Centerline = std::vector<CenterlineSegment>;
 
 /// Distance between neighbouring samples of a centreline, metres.
 constexpr double kCenterlineStep = 0.005;
 
 /// Distances between two centrelines, metres.
 struct CenterlineError {
-  double model_mean = 0.0;  ///< from the model's pieces that are not bridged to the real centreline
+  double model_mean = 0.0;  ///< from the model's segments that are not bridged to the real centreline
   double model_p95 = 0.0;
   double truth_mean = 0.0;  ///< from the visible part of the real centreline to the model's
   double truth_p95 = 0.0;
@@ -46,7 +46,7 @@ Centerline centerline(const scene::PlacedTube& tube);
 /// it.
 std::vector<CenterlineSamples> sample_centerlines(const scene::Scene& scene);
 
-/// `truth_samples` are those of `truth`. The model has at least one piece that is not bridged.
+/// `truth_samples` are those of `truth`. The model has at least one segment that is not bridged.
 CenterlineError centerline_error(const Centerline& truth, const CenterlineSamples& truth_samples,
                                  const Centerline& model);
 

@@ -7,7 +7,7 @@
 
 #include "tubebin/core/yaml.hpp"
 #include "tubebin/scene/scanner_effects.hpp"
-#include "tubebin/tube/tube.hpp"
+#include "tubebin/tube/solids.hpp"
 
 namespace tubebin::scene {
 
@@ -56,6 +56,8 @@ struct PlacedTube {
   Pose world_from_tube = Pose::Identity();
 
   Vec3 node_in_world(int node) const { return world_from_tube * tube.nodes[static_cast<std::size_t>(node)]; }
+  /// World frame, metres.
+  tube::TubeSolids solids_in_world() const;
 };
 
 /// Image columns [x, x + width) and rows [y, y + height), pixels.

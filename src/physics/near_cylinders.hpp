@@ -1,4 +1,4 @@
-/// Which pieces of two tubes may touch, kept over the steps in which the tubes hardly move (Verlet 1967, "Computer
+/// Which cylinders of two tubes may touch, kept over the steps in which the tubes hardly move (Verlet 1967, "Computer
 /// experiments on classical fluids", has the idea: neighbours are listed a little beyond reach).
 #pragma once
 
@@ -8,13 +8,13 @@
 
 namespace tubebin::physics {
 
-/// A tube near another one, and every pair of their pieces that touch, and some more.
+/// A tube near another one, and every pair of their cylinders that touch, and some more.
 struct NearTube {
   std::size_t first = 0;
-  std::vector<PiecePair> pieces;
+  std::vector<CylinderPair> cylinders;
 };
 
-class NearPieces {
+class NearCylinders {
  public:
   /// Brings the lists up to date with where the tubes are, each of which has a touch where it comes within its margin
   /// (metres): beyond kMovementMax only where it moves as far in a step.

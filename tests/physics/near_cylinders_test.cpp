@@ -1,4 +1,4 @@
-#include "physics/near_pieces.hpp"
+#include "physics/near_cylinders.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,20 +7,20 @@
 namespace tubebin::physics {
 namespace {
 
-const std::vector<PiecePair>& pairs(const NearPieces& near_pieces, std::size_t first, std::size_t second) {
-  static const std::vector<PiecePair> none;
-  for (const NearTube& near : near_pieces.near(second))
-    if (near.first == first) return near.pieces;
+const std::vector<CylinderPair>& pairs(const NearCylinders& near_cylinders, std::size_t first, std::size_t second) {
+  static const std::vector<CylinderPair> none;
+  for (const NearTube& near : near_cylinders.near(second))
+    if (near.first == first) return near.cylinders;
   return none;
 }
 
 /// Tubes that wander by steps of all sizes, some smaller and some larger than what makes a list anew.
-TEST(NearPieces, MissNoTouchWhileTubesMove) {
+TEST(NearCylinders, MissNoTouchWhileTubesMove) {
   Random random(5);
   std::vector<scene::PlacedTube> tubes;
   for (const tube::Tube& tube : tube::generate_tubes(6, {}, random))
     tubes.push_back({tube, make_pose(random.rotation(), Vec3(0, 0, random.uniform(0.0, 0.05)))});
-  NearPieces near_pieces;
+  NearCylinders near_cylinders;
   std::size_t touches_found = 0, pairs_listed = 0, pairs_of_all = 0;
   for (int step = 0; step < 400; ++step) {
     std::vector<CollisionTube> shapes;
@@ -29,14 +29,14 @@ TEST(NearPieces, MissNoTouchWhileTubesMove) {
       const auto some = [&] { return random.uniform(-size, size); };
       tube.world_from_tube.pretranslate(Vec3(some(), some(), some()));
       tube.world_from_tube.rotate(Eigen::AngleAxisd(5.0 * some(), Vec3::UnitX()));
-      shapes.push_back(collision_tube(tube));
+      shapes.emplace_back(tube);
     }
-    near_pieces.follow(shapes, std::vector<double>(shapes.size(), 0.0));
+    near_cylinders.follow(shapes, std::vector<double>(shapes.size(), 0.0));
     for (std::size_t j = 1; j < shapes.size(); ++j)
       for (std::size_t i = 0; i < j; ++i) {
         std::vector<Touch> expected, found;
         collide(shapes[i], shapes[j], 0.0, expected);
-        collide(shapes[i], shapes[j], pairs(near_pieces, i, j), 0.0, found);
+        collide(shapes[i], shapes[j], pairs(near_cylinders, i, j), 0.0, found);
         ASSERT_EQ(found.size(), expected.size());
         for (std::size_t k = 0; k < found.size(); ++k) {
           EXPECT_EQ(found[k].position, expected[k].position);
@@ -44,8 +44,8 @@ TEST(NearPieces, MissNoTouchWhileTubesMove) {
           EXPECT_EQ(found[k].depth, expected[k].depth);
         }
         touches_found += found.size();
-        pairs_listed += pairs(near_pieces, i, j).size();
-        pairs_of_all += shapes[i].pieces.size() * shapes[j].pieces.size();
+        pairs_listed += pairs(near_cylinders, i, j).size();
+        pairs_of_all += shapes[i].cylinders.size() * shapes[j].cylinders.size();
       }
   }
   EXPECT_GT(touches_found, 1000u);

@@ -1,4 +1,4 @@
-#include "physics/near_pieces.hpp"
+#include "physics/near_cylinders.hpp"
 
 #include <algorithm>
 
@@ -20,7 +20,7 @@ bool have_moved(const std::vector<Vec3>& nodes, const std::vector<Vec3>& when_li
 
 }  // namespace
 
-void NearPieces::follow(const std::vector<CollisionTube>& tubes, const std::vector<double>& margins) {
+void NearCylinders::follow(const std::vector<CollisionTube>& tubes, const std::vector<double>& margins) {
   const bool is_new = nodes_when_listed_.empty();
   nodes_when_listed_.resize(tubes.size());
   near_.resize(tubes.size());
@@ -33,8 +33,9 @@ void NearPieces::follow(const std::vector<CollisionTube>& tubes, const std::vect
     std::erase_if(near, [&](const NearTube& other) { return moved[second] || moved[other.first]; });
     for (const std::size_t first : moved[second] ? all_before : moved_before) {
       NearTube other{first, {}};
-      find_near_pieces(tubes[first], tubes[second], kReach + std::max(margins[first], margins[second]), other.pieces);
-      if (!other.pieces.empty()) near.push_back(std::move(other));
+      find_near_cylinders(tubes[first], tubes[second], kReach + std::max(margins[first], margins[second]),
+                          other.cylinders);
+      if (!other.cylinders.empty()) near.push_back(std::move(other));
     }
     std::sort(near.begin(), near.end(), [](const NearTube& a, const NearTube& b) { return a.first < b.first; });
     all_before.push_back(second);
