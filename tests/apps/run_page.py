@@ -34,9 +34,9 @@ def workplace(folder, bin_dir):
     """A folder that the page's paths begin at, and the environment of its commands."""
     for name in ("config", "data", "examples"):
         (folder / name).symlink_to(ROOT / name)
-    (folder / ".path").mkdir()
-    (folder / ".path/python3").symlink_to(python_with_numpy())
-    return dict(os.environ, PATH=f"{folder}/.path:{bin_dir}:{os.environ['PATH']}", PYTHONDONTWRITEBYTECODE="1")
+    # A link to an environment's python3 elsewhere would not find the environment's packages.
+    python_folder = pathlib.Path(python_with_numpy()).parent
+    return dict(os.environ, PATH=f"{bin_dir}:{python_folder}:{os.environ['PATH']}", PYTHONDONTWRITEBYTECODE="1")
 
 
 def same(shown, printed):
