@@ -12,28 +12,50 @@ bool agrees(std::int64_t part, std::int64_t whole) {
   return static_cast<double>(part) >= kHooverTolerance * static_cast<double>(whole);
 }
 
-TubeScore score_tube(const Contingency& c, const Matching& matching, std::size_t row) {
+/// The row that has most points of each predicted segment.
+std::vector<std::size_t> main_rows(const Contingency& c) {
+  std::vector<std::size_t> rows;
+  for (Eigen::Index column = 0; column < c.counts.cols(); ++column) {
+    Eigen::Index row = 0;
+    c.counts.col(column).maxCoeff(&row);
+    rows.push_back(static_cast<std::size_t>(row));
+  }
+  return rows;
+}
+
+TubeScore score_tube(const Contingency& c, const Matching& matching, const std::vector<std::size_t>& main_row,
+                     std::size_t row) {
   TubeScore score;
   score.truth_id = c.truth_ids[row];
   score.points = c.truth_size(row);
+  score.missed = c.unlabeled[row];
   const int matched = matching.column_of_row[row];
-  if (matched == kUnmatched) return score;
-  const auto column = static_cast<std::size_t>(matched);
-  score.predicted_id = c.predicted_ids[column];
-  score.predicted_points = c.predicted_size(column);
-  score.correct = c.count(row, column);
+  for (std::size_t column = 0; column < columns_of(c); ++column) {
+    if (static_cast<int>(column) == matched) {
+      score.predicted_id = c.predicted_ids[column];
+      score.predicted_points = c.predicted_size(column);
+      score.correct = c.count(row, column);
+    } else {
+      (main_row[column] == row ? score.split : score.merged) += c.count(row, column);
+    }
+  }
   return score;
 }
 
 /// The predicted segments that have most of their points in a selected row.
 std::vector<bool> columns_of_rows(const Contingency& c, const std::vector<bool>& selected) {
-  std::vector<bool> columns(columns_of(c));
-  for (std::size_t column = 0; column < columns.size(); ++column) {
-    Eigen::Index row = 0;
-    c.counts.col(static_cast<Eigen::Index>(column)).maxCoeff(&row);
-    columns[column] = selected[static_cast<std::size_t>(row)];
-  }
+  std::vector<bool> columns;
+  for (const std::size_t row : main_rows(c)) columns.push_back(selected[row]);
   return columns;
+}
+
+/// Points of the bin in the selected segments.
+std::int64_t count_background(const Contingency& c, const std::vector<bool>& columns) {
+  std::int64_t points = 0;
+  for (std::size_t row = 0; row < c.truth_ids.size(); ++row)
+    for (std::size_t column = 0; column < columns.size(); ++column)
+      if (c.is_bin(row) && columns[column]) points += c.count(row, column);
+  return points;
 }
 
 /// IoU pairs above one half are unique (Kirillov et al. 2019), so each needs no further matching.
@@ -135,12 +157,14 @@ Counts partition_counts(const Contingency& c, const std::vector<bool>& rows) {
 SegmentationScores score(const Contingency& c, const Matching& matching, const std::vector<bool>& rows,
                          const std::vector<bool>& columns) {
   SegmentationScores scores;
+  const std::vector<std::size_t> main_row = main_rows(c);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     if (!rows[row]) continue;
-    scores.tubes.push_back(score_tube(c, matching, row));
+    scores.tubes.push_back(score_tube(c, matching, main_row, row));
     scores.points += scores.tubes.back().points;
     scores.correct += scores.tubes.back().correct;
   }
+  scores.background = count_background(c, columns);
   scores.predicted_tubes = static_cast<int>(std::count(columns.begin(), columns.end(), true));
   count_true_positives(c, rows, scores);
   scores.adjusted_rand_index = adjusted_rand_index(partition_counts(c, rows));

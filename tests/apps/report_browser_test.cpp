@@ -55,36 +55,110 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-TEST(ReportInBrowser, OpensWithoutErrorsAndShowsEverything) {
-  if (std::system("command -v chromium >/dev/null 2>&1") != 0) GTEST_SKIP() << "no chromium here";
-  testing::TemporaryFolder folder;
-  testing::SyntheticSweep sweep;
-  sweep.tubes = {1, 5, 10, 20};
-  sweep.ratios = {0.1, 0.3, 1.0};
-  sweep.methods = {"centerline", "region_growing"};
-  testing::write_synthetic_sweep(folder.path(), sweep);
-  keep_clouds(folder.path(), "B20/001", 20, sweep.ratios);
-  const std::string report = (folder.path() / "report.html").string();
-  const CommandResult evaluated = testing::run_command(
-      fmt::format("{}/evaluate {}/results --paper --html {} 2>&1", TUBEBIN_BIN_DIR, folder.path().string(), report));
-  ASSERT_EQ(evaluated.exit_code, 0) << evaluated.output;
+class ReportInBrowser : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("command -v chromium >/dev/null 2>&1") != 0) GTEST_SKIP() << "no chromium here";
+    testing::SyntheticSweep sweep;
+    sweep.tubes = {1, 5, 10, 20};
+    sweep.ratios = {0.1, 0.3, 1.0};
+    sweep.methods = {"centerline", "region_growing"};
+    testing::write_synthetic_sweep(folder_.path(), sweep);
+    keep_clouds(folder_.path(), "B20/001", 20, sweep.ratios);
+    const CommandResult evaluated = testing::run_command(fmt::format(
+        "{0}/evaluate {1}/results --paper --html {1}/report.html 2>&1", TUBEBIN_BIN_DIR, folder_.path().string()));
+    ASSERT_EQ(evaluated.exit_code, 0) << evaluated.output;
+  }
 
-  const std::string log = (folder.path() / "browser.log").string();
-  const CommandResult dom =
-      testing::run_command(fmt::format("chromium --headless --no-sandbox --disable-gpu --disable-quic "
-                                       "--no-first-run --disable-background-networking "
-                                       "--disable-component-update --disable-sync --user-data-dir={}/profile "
-                                       "--enable-logging=stderr --dump-dom "
-                                       "file://{} 2>{}",
-                                       folder.path().string(), report, log));
-  ASSERT_EQ(dom.exit_code, 0) << read_file(log);
-  EXPECT_THAT(read_file(log), Not(HasSubstr("CONSOLE")));
-  EXPECT_THAT(dom.output, AllOf(HasSubstr("id=\"figure_8\""), HasSubstr("id=\"figure_9\""),
-                                HasSubstr("id=\"table_2_centerline\""), HasSubstr("id=\"table_2_region_growing\""),
-                                HasSubstr("id=\"configuration\""), HasSubstr("Claims of Section 6.2, region_growing")));
-  EXPECT_EQ(count(dom.output, "<svg"), 4U);
-  EXPECT_EQ(count(dom.output, "data:image/png;base64,"), 6U);  // the one scene whose clouds were kept, by two methods
-  EXPECT_EQ(count(dom.output, "<section"), 6U);
+  /// The document after the page's scripts have run, in a window of 1280 by 900 pixels.
+  std::string dom(const std::string& page) const {
+    const std::string log = (folder_.path() / "browser.log").string();
+    const CommandResult result = testing::run_command(
+        fmt::format("chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
+                    "--disable-background-networking --disable-component-update --disable-sync "
+                    "--allow-file-access-from-files --window-size=1280,900 --user-data-dir={0}/profile "
+                    "--virtual-time-budget=5000 --enable-logging=stderr --dump-dom file://{0}/{1} 2>{2}",
+                    folder_.path().string(), page, log));
+    EXPECT_EQ(result.exit_code, 0) << read_file(log);
+    EXPECT_THAT(read_file(log), Not(HasSubstr("CONSOLE")));
+    return result.output;
+  }
+
+  /// What `script` puts into `result` when it looks at the report in a frame of that width.
+  nlohmann::json look(int width, const std::string& script) const {
+    testing::write_text(folder_.path() / "look.html", fmt::format(R"html(<!DOCTYPE html><body>
+<iframe id="frame" src="report.html" style="width:{}px;height:900px;border:0"></iframe><script>
+document.getElementById("frame").addEventListener("load", (event) => {{
+  const page = event.target.contentDocument, result = {{}};
+  {}
+  document.body.dataset.result = encodeURIComponent(JSON.stringify(result));
+}});
+</script></body>)html",
+                                                                  width, script));
+    const std::string html = dom("look.html");
+    const std::string start = "data-result=\"";
+    const std::size_t at = html.find(start);
+    if (at == std::string::npos) throw std::runtime_error("the script did not run: " + html);
+    const std::string encoded = html.substr(at + start.size(), html.find('"', at + start.size()) - at - start.size());
+    std::string text;
+    for (std::size_t i = 0; i < encoded.size(); ++i)
+      if (encoded[i] == '%') text += static_cast<char>(std::stoi(encoded.substr(i + 1, 2), nullptr, 16)), i += 2;
+      else text += encoded[i];
+    return nlohmann::json::parse(text);
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(ReportInBrowser, OpensWithoutErrorsAndShowsEverything) {
+  const std::string html = dom("report.html");
+  EXPECT_THAT(html,
+              AllOf(HasSubstr("id=\"figure_8\""), HasSubstr("id=\"figure_9\""), HasSubstr("id=\"table_2_centerline\""),
+                    HasSubstr("id=\"table_2_region_growing\""), HasSubstr("Claims of Section 6.2, region_growing")));
+  for (const char* id : {"verdict", "worst", "scenes", "measures", "plots", "paper", "tables", "configuration"})
+    EXPECT_EQ(count(html, fmt::format("<section id=\"{}\"", id)), 1U) << id;
+  EXPECT_EQ(count(html, "<svg"), 4U);
+  EXPECT_EQ(count(html, "class=\"verdict\""), 2U);       // one a method
+  EXPECT_EQ(count(html, "data:image/png;base64,"), 6U);  // the one scene whose clouds were kept, by two methods
+}
+
+TEST_F(ReportInBrowser, FitsAPhoneAndShowsAPictureEarly) {
+  const std::string script =
+      "result.width = page.documentElement.scrollWidth;"
+      "result.picture = page.querySelector('img').getBoundingClientRect().top;";
+  EXPECT_LE(look(390, script)["width"], 390);
+  EXPECT_LT(look(390, script)["picture"], 1500);
+  EXPECT_LT(look(1280, script)["picture"], 1000);
+}
+
+TEST_F(ReportInBrowser, SortsAndFiltersScenes) {
+  const nlohmann::json seen = look(1280, R"js(
+  const table = page.querySelector(".scenes table");
+  const column = (i) => [...table.tBodies[0].rows].filter((row) => !row.hidden).map((row) => row.cells[i].textContent);
+  result.first = column(4);
+  const buttons = table.querySelectorAll("th button");
+  buttons[2].click();
+  result.up = column(2);
+  buttons[2].click();
+  result.down = column(2);
+  result.order = table.querySelectorAll("th")[2].getAttribute("aria-sort");
+  const input = page.querySelector(".filter input");
+  input.value = "b20 region";
+  input.dispatchEvent(new Event("input"));
+  result.filtered = column(0).concat(column(1));
+  result.shown = page.querySelector(".filter output").textContent;)js");
+  EXPECT_TRUE(std::is_sorted(seen["first"].begin(), seen["first"].end()));
+  const auto tubes = [&](const char* order) {
+    std::vector<int> values;
+    for (const std::string text : seen[order]) values.push_back(std::stoi(text));
+    return values;
+  };
+  EXPECT_THAT(tubes("up"), ::testing::WhenSorted(::testing::ContainerEq(tubes("up"))));
+  EXPECT_THAT(tubes("down"), ::testing::WhenSortedBy(std::greater<>(), ::testing::ContainerEq(tubes("down"))));
+  EXPECT_EQ(tubes("up").front(), 1);
+  EXPECT_EQ(seen["order"], "descending");
+  EXPECT_EQ(seen["filtered"], (nlohmann::json{"B20/001", "B20/002", "region_growing", "region_growing"}));
+  EXPECT_EQ(seen["shown"], "2 of 32");
 }
 
 }  // namespace

@@ -175,10 +175,9 @@ TEST(Claims, OfTheGenerator) {
 TEST(Report, IsSelfContainedAndWellFormed) {
   const Evaluation evaluation = synthetic_evaluation(paper_sweep());
   std::string html = format_html_report({evaluation});
-  EXPECT_THAT(html, Not(HasSubstr("<script")));
   html = std::regex_replace(html, std::regex("http://www.w3.org/2000/svg"), "");
   EXPECT_THAT(html, AllOf(Not(HasSubstr("http:")), Not(HasSubstr("https:")), Not(HasSubstr("url("))));
-  html = std::regex_replace(html, std::regex("<style>[^<]*</style>|<!DOCTYPE html>"), "");
+  html = std::regex_replace(html, std::regex("<style>[^<]*</style>|<script>[^]*</script>|<!DOCTYPE html>"), "");
   expect_balanced(html);
 }
 
@@ -196,16 +195,16 @@ TEST(Report, NamesThePaperWhereItIsAskedForAlone) {
 TEST(Report, EscapesWhatFilesSay) {
   Evaluation evaluation = synthetic_evaluation({});
   evaluation.notes.push_back("<script>alert(1)</script>");
-  EXPECT_THAT(format_html_report({evaluation}), Not(HasSubstr("<script>")));
+  EXPECT_THAT(format_html_report({evaluation}), Not(HasSubstr("<script>alert")));
 }
 
-TEST(Report, PicturesTheWorstAndTheBestRunsOfDifferentScenes) {
+TEST(Report, PicturesTheWorstRunsOfDifferentScenes) {
   const Evaluation evaluation = synthetic_evaluation(paper_sweep());
   const std::vector<const RunScore*> runs = pictured_runs(evaluation.runs);
-  ASSERT_THAT(runs, SizeIs(5));
+  ASSERT_THAT(runs, SizeIs(3));
   EXPECT_EQ(runs[0]->key.name(), "B20/001 centerline 0.1");
   EXPECT_EQ(runs[1]->key.name(), "B20/002 centerline 0.1");
-  EXPECT_EQ(runs[4]->key.scene, "A1/002");
+  EXPECT_EQ(runs[2]->key.name(), "B15/001 centerline 0.1");
 }
 
 TEST(ScenePicture, ShowsTubesLabelsAndErrors) {

@@ -21,7 +21,7 @@ struct ReportInput {
 
 std::string format_html_report(const ReportInput& input);
 
-/// The runs that the report shows: for each method the worst ones and the best, at most one a scene.
+/// The runs that the report shows: the three worst of each method, at most one a scene.
 std::vector<const RunScore*> pictured_runs(const std::vector<RunScore>& runs);
 
 }  // namespace tubebin::evaluation

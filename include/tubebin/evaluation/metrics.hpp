@@ -25,6 +25,9 @@ struct TubeScore {
   std::int64_t points = 0;                          ///< of the tube
   std::int64_t predicted_points = 0;                ///< of the matched segment
   std::int64_t correct = 0;                         ///< in both
+  std::int64_t split = 0;                           ///< of the tube, in other segments that are mostly this tube
+  std::int64_t merged = 0;                          ///< of the tube, in segments that are mostly something else
+  std::int64_t missed = 0;                          ///< of the tube, in no segment
   std::optional<double> visible_fraction;           ///< of the centreline, where the scene is known
   std::optional<CenterlineError> centerline_error;  ///< where tube and model are known and matched
 
@@ -53,6 +56,7 @@ struct HooverCounts {
 struct SegmentationScores {
   std::int64_t points = 0;                               ///< of these tubes
   std::int64_t correct = 0;                              ///< of these, labelled as the matching says
+  std::int64_t background = 0;                           ///< points of the bin in these tubes' segments
   std::vector<TubeScore> tubes;                          ///< that have points in the filtered cloud
   int predicted_tubes = 0;                               ///< predicted segments that belong to these tubes
   std::array<int, kIouThresholdCount> true_positives{};  ///< pairs with an IoU above each threshold

@@ -65,4 +65,14 @@ void append_exact_measures(const PooledScores& pooled, std::vector<Cell>& row) {
   for (const Measure& measure : measures()) row.push_back(shown(measure, pooled, exact_cell));
 }
 
+std::string sentence_of(const std::string& header) {
+  if (header == "runs") return "Clouds modelled, each at each ratio.";
+  if (header == "failed") return "Runs without a result; they count as zero.";
+  if (header == "micro-recall") return "Share of the points that carry the right tube; in brackets, its 95 % interval.";
+  if (header == "seconds a run") return "Mean time to model a cloud.";
+  for (const Measure& measure : measures())
+    if (measure.header != nullptr && measure.header == header) return measure.sentence;
+  return "";
+}
+
 }  // namespace tubebin::evaluation

@@ -28,6 +28,9 @@ void append_measures(const PooledScores& pooled, std::vector<Cell>& row);
 void append_measure_keys(std::vector<std::string>& headers);
 void append_exact_measures(const PooledScores& pooled, std::vector<Cell>& row);
 
+/// A sentence on the row or column of the overview; empty for a header that it does not have.
+std::string sentence_of(const std::string& header);
+
 /// A number as programs read it.
 inline Cell exact_cell(double value) { return number_cell(value, 6); }
 

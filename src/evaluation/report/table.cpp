@@ -148,8 +148,9 @@ std::string escape_html(const std::string& text) {
 
 std::string format_html(const Table& table) {
   const std::vector<bool> numeric = numeric_columns(table);
-  std::string text =
-      fmt::format("<div class=\"table\"><table><caption>{}</caption><thead><tr>", escape_html(table.title));
+  std::string text = fmt::format(
+      "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"{0}\"><table><caption>{0}</caption><thead><tr>",
+      escape_html(table.title));
   for (std::size_t i = 0; i < table.headers.size(); ++i)
     text += fmt::format("<th scope=\"col\"{}>{}</th>", numeric[i] ? " class=\"number\"" : "",
                         escape_html(table.headers[i]));

@@ -1,0 +1,17 @@
+/// The report's first screen: verdict, histogram, worst scenes, table of scenes.
+#pragma once
+
+#include <string>
+
+#include "tubebin/evaluation/html_report.hpp"
+
+namespace tubebin::evaluation {
+
+/// In words, with a histogram over the scenes beside them: one block a method.
+std::string verdict_html(const Evaluation& evaluation);
+/// Pictures of the worst scenes of each method with the reasons.
+std::string worst_scenes_html(const ReportInput& input);
+/// One row a method and scene, the worst first.
+std::string scene_table_html(const Evaluation& evaluation);
+
+}  // namespace tubebin::evaluation
