@@ -60,7 +60,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--budget", options.budget, "How often all training clouds may be modelled")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
-  app.add_option("--seed", options.seed, "Of the split and of the search")->capture_default_str();
+  app.add_option("--seed", options.seed, "Of the split and of the search")
+      ->check(whole_number())
+      ->capture_default_str();
   app.add_option("-j,--jobs", options.jobs, "Worker processes")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_flag("-q,--quiet", arguments.quiet, "No progress, only errors and results");
 }

@@ -69,7 +69,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->type_name("1,5,10-15");
   app.add_option("--cases", arguments.cases, "Scenes for each number of tubes, instead of the configuration's")
       ->check(CLI::Range(1, 1000000));
-  app.add_option("--seed", arguments.seed, "Seed, instead of the configuration's")->check(CLI::NonNegativeNumber);
+  app.add_option("--seed", arguments.seed, "Seed, instead of the configuration's")->check(whole_number());
   app.add_option("-j,--jobs", arguments.jobs, "Worker processes")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("--shard", arguments.shard,
                  "Make only part I of N, counted from 1; without it, as the environment of a job array says")

@@ -96,8 +96,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag("--full", arguments.full,
                "Also write full.pcd, all points in their places, labelled; always for an organized cloud");
   app.add_option("--scale", arguments.scale, "Factor from the file's unit to metres: 0.001 for millimetres")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--seed", arguments.seed, "Seed of downsampling and RANSAC");
+      ->check(positive_number("a number above 0, like 0.001 for a file in millimetres"));
+  app.add_option("--seed", arguments.seed, "Seed of downsampling and RANSAC")->check(whole_number());
   app.add_option("-j,--jobs", arguments.jobs, "Worker processes for a data set")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

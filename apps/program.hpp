@@ -5,7 +5,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <limits>
 #include <new>
+#include <optional>
+#include <string>
 
 #include "standard_streams.hpp"
 #include "tubebin/core/error.hpp"
@@ -29,6 +33,30 @@ inline void read_integers_as_decimal(CLI::App& app) {
       option->transform(strip_zeros);
 }
 
+/// A number of the command line: refused with what would be right. CLI11's own words for a range without an end are 309
+/// digits long.
+template <typename Number>
+CLI::Validator number_of(const char* right, Number least) {
+  return {[right, least](const std::string& word) {
+            const std::optional<Number> number = to_number<Number>(word);
+            return number && *number >= least && *number <= std::numeric_limits<Number>::max()
+                       ? ""
+                       : fmt::format("'{}' is not {}", excerpt(word), right);
+          },
+          ""};
+}
+inline CLI::Validator whole_number() { return number_of<std::uint64_t>("a whole number from 0 to 2^64 - 1", 0); }
+inline CLI::Validator positive_number(const char* right) {
+  return number_of<double>(right, std::numeric_limits<double>::denorm_min());
+}
+
+/// Every option that CLI11 converts is a number.
+inline std::string describe_failure(const CLI::App* app, const CLI::Error& error) {
+  std::string text = CLI::FailureMessage::simple(app, error);
+  if (error.get_name() == "ConversionError") text.insert(text.find('\n'), "; a number is needed there");
+  return text;
+}
+
 /// Paths go into JSON files and reports, which are UTF-8. Throws ConfigError.
 inline void require_utf8(int argc, char** argv) {
   for (int i = 1; i < argc; ++i)
@@ -48,6 +76,7 @@ int run_program(const char* name, CLI::App& app, int argc, char** argv, const Ru
   try {
     require_utf8(argc, argv);
     read_integers_as_decimal(app);
+    app.failure_message(describe_failure);
     app.parse(argc, argv);
     code = run();
   } catch (const CLI::ParseError& error) {
