@@ -163,7 +163,7 @@ void describe(Fields& fields, ModelingOptions& options) {
   fields.number("radius", options.radius, {0.0, 1.0}, "m", "outer radius of the tubes; 0: estimated from the cloud");
   fields.list("other_radii", options.other_radii, "where tubes of several radii are told");
   fields.number("tube_length", options.tube_length, {0.0, 100.0}, "m",
-                "length of every tube; 0: what the tubes in sight agree on, if they do");
+                "length of every tube; 0: a common one where it explains the scan best");
   fields.vector("up", options.up, {-1.0, 1.0}, "",
                 "against gravity, in the cloud's frame; zeros: found from what the tubes lie on");
   fields.vector("crop_min", options.crop_min, {-1000.0, 1000.0}, "m",

@@ -64,6 +64,17 @@ TEST_F(TubeJoining, BitsOfSurfaceTellNoCommonLength) {
   EXPECT_NEAR(lengths.front(), 0.5, 1e-9);
 }
 
+TEST_F(TubeJoining, ALengthIsCommonWhereMostTubesHaveIt) {
+  const auto length_of = [&](const std::vector<double>& lengths) {
+    std::vector<TubePiece> pieces;
+    for (std::size_t i = 0; i < lengths.size(); ++i)
+      pieces.push_back(straight(0.1 * double(i) - 0.3, -0.25, -0.25 + lengths[i]));
+    return join_pieces(pieces, occlusion(), 0.0).tube_length;
+  };
+  EXPECT_DOUBLE_EQ(length_of({0.5, 0.5, 0.501, 0.502, 0.35}), 0.501);
+  EXPECT_EQ(length_of({0.5, 0.5, 0.55, 0.6, 0.4, 0.35}), 0.0);  // two by chance
+}
+
 TEST_F(TubeJoining, AnEndThatIsDrawnOutPreventsNoClearJoin) {
   const auto lengths = joined_lengths(
       {straight(0, -0.25, -0.01), straight(0, 0.01, 0.283), straight(0.3, -0.25, 0.25), straight(-0.3, -0.25, 0.25)});

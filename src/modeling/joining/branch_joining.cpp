@@ -160,17 +160,18 @@ class TreeJoiner {
 
   double length_cost(const Tree& tree) const {
     const double missing = tube_length_ - tree.length, sigma = length_sigma(tree.paths.size());
-    if (missing < 0.0) return 0.5 * missing * missing / (sigma * sigma);
     double room = 0.0;
     for (const std::uint32_t p : tree.paths)
       for (const std::uint32_t end : {2 * p, 2 * p + 1})
         if (!tree.uses(end) && ends_[end].seen_free < 0.5) room += ends_[end].hidden_reach + radius_;
-    const double unexplained = std::max(missing - room, 0.0);
+    const double unexplained = missing < 0.0 ? missing : std::max(missing - room, 0.0);
     return std::min(0.5 * unexplained * unexplained / (sigma * sigma), kTreeLengthCostLimit);
   }
 
+  /// A path longer than the tubes' common length stands alone: a wrong length deletes nothing.
   void grow(const Tree& tree) {
-    if (budget_ == 0 || tree.length > tube_length_ + 4.0 * length_sigma(tree.paths.size())) return;
+    if (budget_ == 0) return;
+    if (tree.paths.size() > 1 && tree.length > tube_length_ + 4.0 * length_sigma(tree.paths.size())) return;
     --budget_;
     const auto [entry, added] = tree_of_key_.try_emplace(tree.key, trees_.size());
     const double cost = tree.link_cost + length_cost(tree);

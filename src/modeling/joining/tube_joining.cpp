@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <ext/pb_ds/assoc_container.hpp>
-#include <numeric>
+#include <numbers>
+#include <tuple>
 
 #include "modeling/joining/boxed_curve.hpp"
 #include "modeling/joining/path_cover.hpp"
@@ -24,6 +25,7 @@ constexpr double kFragmentCostLimit = 3.0;
 constexpr double kJoinCostLimit = 7.0;
 /// And clear where it is e^2 times likelier with it.
 constexpr double kClearJoinCost = -2.0;
+constexpr std::size_t kPossibleLengths = 4;
 constexpr std::size_t kNodeLimit = 1000;
 /// The right join is among an end's cheapest few, or it could not be told from chance anyhow.
 constexpr std::size_t kJoinsPerEnd = 4;
@@ -95,59 +97,61 @@ class Joiner {
     return seen;
   }
 
-  /// The length that tubes with both ends in sight agree on (is_common), 0 where none is. Of several such lengths the one
-  /// with the most tube to it counts: chance shortens tubes, by missed joins, and lengthens few.
-  double common_length() const {
-    const double tolerance = length_tolerance();
+  /// Lengths that tubes in sight from end to end agree on: those of the most tube, summed up over them, first.
+  std::vector<double> possible_lengths() const {
     const std::vector<double> seen = seen_lengths();
-    double common = 0.0, most = 0.0;
+    std::vector<std::pair<double, double>> of_support;
     for (std::size_t first = 0; first < seen.size(); ++first) {
       std::size_t last = first;
       double sum = 0.0;
-      while (last < seen.size() && seen[last] <= seen[first] + tolerance) sum += seen[last++];
-      if (sum > most && is_common(last - first, first, count_longer_pieces(seen[first] + tolerance)))
-        most = sum, common = seen[first + (last - first) / 2];
+      while (last < seen.size() && seen[last] <= seen[first] + length_tolerance()) sum += seen[last++];
+      of_support.emplace_back(sum, seen[first + (last - first) / 2]);
     }
-    return common;
+    std::sort(of_support.begin(), of_support.end(), std::greater<>());
+    std::vector<double> lengths;
+    for (const auto& [support, length] : of_support) {
+      if (lengths.size() == kPossibleLengths) break;
+      if (std::find(lengths.begin(), lengths.end(), length) == lengths.end()) lengths.push_back(length);
+    }
+    return lengths;
   }
 
-  /// Of the tubes in sight from end to end, two at least have a length that is common to all, twice as many as are
-  /// shorter by a missed join; a single piece that is longer is an end drawn out, and seldom.
-  static bool is_common(std::size_t as_long, std::size_t shorter, std::size_t longer_pieces) {
-    return as_long >= 2 && as_long >= 2 * shorter && as_long >= 6 * longer_pieces;
+  /// What speaks against the chains, nats. One that all lengths up to the common one are as likely for has it but once
+  /// in length / (sqrt(2 pi) sigma).
+  double cost() const {
+    double cost = 0.0;
+    for (const Chain& chain : chains_) {
+      cost += chain.path.cost;
+      const double sigma = length_sigma(chain.bridged);
+      if (tube_length_ > 0.0 && std::abs(chain.length - tube_length_) <= 2.0 * sigma)
+        cost -= std::log(tube_length_ / (std::sqrt(2.0 * std::numbers::pi) * sigma));
+    }
+    return cost;
   }
 
-  /// Whether enough tubes with both ends in sight have this length.
-  bool is_confirmed(double length) const {
-    const std::vector<double> seen = seen_lengths();
-    const double tolerance = length_tolerance() / 2.0;
-    const auto as_long = static_cast<std::size_t>(
-        std::count_if(seen.begin(), seen.end(), [&](double other) { return std::abs(other - length) < tolerance; }));
-    const auto shorter = static_cast<std::size_t>(std::ranges::lower_bound(seen, length - tolerance) - seen.begin());
-    return is_common(as_long, shorter, count_longer_pieces(length + tolerance));
+  /// No tube becomes much longer than those that likely joins make.
+  void solve_with_longest_length() {
+    if (tubes_branch_) return;  // chains are parts of them
+    longest_likely_ = std::ranges::max(chains_, {}, &Chain::length).length;
+    find_joins();
+    solve();
   }
 
   /// Once the tubes' common length is known, joins that complete a tube are likelier and those that exceed it ruled
-  /// out. Where no two tubes are in sight from end to end, the length of one may be confirmed by what it completes.
+  /// out. They have one where it explains the scan better than tubes of any length do.
   void solve_with_common_length() {
     if (tubes_branch_) return;  // chains are parts of them
-    tube_length_ = common_length();
-    if (tube_length_ > 0.0) {
-      find_joins();
-      return solve();
-    }
-    const std::vector<double> seen = seen_lengths();
-    const std::vector<Chain> without_length = chains_;
-    const std::vector<JoinCandidate> joins_without_length = joins_;
-    for (auto length = seen.rbegin(); length != seen.rend(); ++length) {
-      tube_length_ = *length;
-      if (length == seen.rbegin()) find_joins();  // the longest, and so those of the others too
+    const std::vector<double> lengths = possible_lengths();
+    if (lengths.empty()) return;
+    auto best = std::tuple(cost(), 0.0, chains_, joins_);
+    tube_length_ = std::ranges::max(lengths);
+    find_joins();  // of the longest, and so those of the others too
+    for (const double length : lengths) {
+      tube_length_ = length;
       solve();
-      if (is_confirmed(*length)) return;
+      if (cost() < std::get<0>(best)) best = std::tuple(cost(), length, chains_, joins_);
     }
-    tube_length_ = 0.0;
-    chains_ = without_length;
-    joins_ = joins_without_length;
+    std::tie(std::ignore, tube_length_, chains_, joins_) = best;
   }
 
   Joining result() const {
@@ -160,14 +164,9 @@ class Joiner {
   }
 
  private:
-  std::size_t count_longer_pieces(double than) const {
-    return static_cast<std::size_t>(
-        std::count_if(lengths_.begin(), lengths_.end(), [&](double length) { return length > than; }));
-  }
-
   double longest() const {
-    return tube_length_ > 0.0 ? tube_length_ + 5.0 * length_sigma(tube_length_ / 4.0)
-                              : std::numeric_limits<double>::infinity();
+    const double length = tube_length_ > 0.0 ? tube_length_ : longest_likely_;
+    return length + 5.0 * length_sigma(length / 4.0);
   }
 
   /// Ends are placed to a fraction of a radius, and a bridge's true course may be a twentieth longer.
@@ -287,20 +286,25 @@ class Joiner {
     chains_ = std::move(kept);
   }
 
-  /// Where tubes branch, every few pieces show it. An end on another's side is a misfit where it is one of many.
+  /// Where tubes branch, every few pieces show it: what meets another's side is as long as two diameters, longer than
+  /// the bits of surface beside bends. One such end is a misfit, and several show branches.
   void decide_whether_tubes_branch() {
     const auto pieces = std::count_if(pieces_.begin(), pieces_.end(), [](const auto& p) { return !is_fragment(p); });
-    const auto branches = std::count_if(ends_.begin(), ends_.end(), [](const PieceEnd& end) { return end.is_on_side; });
-    tubes_branch_ = branches >= 2 && 14 * branches >= pieces;
+    std::size_t branches = 0;
+    for (std::uint32_t end = 0; end < ends_.size(); ++end)
+      branches += ends_[end].is_on_side && lengths_[end / 2] >= 4.0 * radius_;
+    tubes_branch_ = branches >= 2 && 14 * branches >= static_cast<std::size_t>(pieces);
     if (!tubes_branch_)
       for (PieceEnd& end : ends_) end.is_on_side = false;
   }
 
-  /// Without a length to explain, a join has to be likelier than not by itself. Where tubes branch, those that are not
-  /// clearly so are left to join_branches, which weighs them against branches.
+  /// Without a length to explain, a join is likelier than not by itself, or explains two ends out of sight once it is
+  /// known how long tubes become. Where tubes branch, joins that are not clear are left to join_branches, which weighs
+  /// them against branches.
   double cost_limit() const {
     if (tubes_branch_) return kClearJoinCost;
-    return tube_length_ > 0.0 ? kJoinCostLimit : 0.0;
+    if (tube_length_ > 0.0) return kJoinCostLimit;
+    return std::isfinite(longest_likely_) ? 2.0 * kHiddenEndCost : 0.0;
   }
 
   void find_joins() {
@@ -355,6 +359,7 @@ class Joiner {
   const std::vector<TubePiece>& pieces_;
   const OcclusionTest& occlusion_;
   double tube_length_;
+  double longest_likely_ = std::numeric_limits<double>::infinity();  ///< of the tubes that likely joins alone make
   double radius_;
   double bending_rate_ = 0.0;
   std::vector<double> lengths_;
@@ -378,7 +383,10 @@ Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& o
   if (pieces.empty()) return {.paths = {}, .tube_length = tube_length, .tubes_branch = false};
   Joiner joiner(pieces, occlusion, tube_length);
   joiner.solve();
-  if (tube_length <= 0.0) joiner.solve_with_common_length();
+  if (tube_length <= 0.0) {
+    joiner.solve_with_longest_length();
+    joiner.solve_with_common_length();
+  }
   return joiner.result();
 }
 
