@@ -38,6 +38,10 @@ Examples:
       one line for each method, set, number of tubes and ratio, with every measure
   evaluate dataset --predictions my_labels
       any program's labelled clouds (docs/foreign_algorithms.md)
+  evaluate results results_told --name estimated --name told
+      two settings of one method side by side; without --name, each is called by what differs
+  evaluate dataset --predictions mine --predictions yours
+      two programs side by side
 
 docs/metrics.md defines every measure.
 Exit codes: 0 done; 1 input or output failed; 2 wrong usage; 3 finished, but some scenes or runs have no result (each
@@ -62,7 +66,8 @@ struct Arguments {
   std::vector<std::string> folders;
   std::string filtered;
   std::string labeled;
-  std::string predictions;
+  std::vector<std::string> predictions;
+  std::vector<std::string> names;
   std::string dataset;
   std::string html;
   std::string plots;
@@ -77,9 +82,14 @@ void add_options(CLI::App& app, Arguments& arguments) {
   auto* folder = app.add_option("FOLDERS", arguments.folders, "Results folders, or a data set with --predictions");
   auto* filtered = app.add_option("--filtered", arguments.filtered, "Cloud with the ground truth (PCD or PLY)");
   auto* labeled = app.add_option("--labeled", arguments.labeled, "The same points, or some of them, as labelled");
-  auto* predictions =
-      app.add_option("--predictions", arguments.predictions, "Labelled clouds of any program, one a scene")
-          ->type_name("DIR");
+  auto* predictions = app.add_option("--predictions", arguments.predictions,
+                                     "Labelled clouds of any program, one a scene; repeatable, to compare programs")
+                          ->allow_extra_args(false)
+                          ->type_name("DIR");
+  auto* names = app.add_option("--name", arguments.names,
+                               "What tables call the next of the folders; without it, what differs between them")
+                    ->allow_extra_args(false)
+                    ->type_name("NAME");
   auto* dataset = app.add_option("--dataset", arguments.dataset, "Data set of a results folder, where it was moved")
                       ->type_name("DIR");
   app.add_option("--field", arguments.field, "What tells segments apart")
@@ -97,7 +107,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   filtered->needs(labeled)->excludes(folder)->excludes(predictions);
   labeled->needs(filtered);
   predictions->needs(folder)->excludes(dataset);
-  for (CLI::Option* option : {dataset, html, plots, paper}) option->needs(folder);
+  for (CLI::Option* option : {names, dataset, html, plots, paper}) option->needs(folder);
 }
 
 int evaluate_pair(const Arguments& arguments) {
@@ -118,13 +128,14 @@ void print_names(const std::vector<std::string>& names, const char* what) {
   if (names.size() > shown) fmt::print(stderr, "  and {} more (--format json names all)\n", names.size() - shown);
 }
 
-void print_gaps(const evaluation::Evaluation& evaluation, const std::vector<std::string>& folders) {
+void print_gaps(const evaluation::Evaluation& evaluation) {
   print_names(evaluation.missing, evaluation.missing_counts_as_zero ? "scenes have no prediction and count as zero:"
                                                                     : "runs are not there yet and are left out:");
-  if (!evaluation.missing.empty() && !evaluation.missing_counts_as_zero) {
+  if (!evaluation.unfinished_calls.empty()) fmt::print(stderr, "To make exactly what is missing:\n");
+  for (const std::vector<std::string>& folders : evaluation.unfinished_calls) {
     std::string command = "model_tubes --resume";
-    for (const std::string& folder : folders) command += " " + shell_path(folder);
-    fmt::print(stderr, "To make exactly what is missing:\n  {}\n", command);
+    for (const std::string& folder : folders) command += fmt::format(" {}", shell_path(folder));
+    fmt::print(stderr, "  {}\n", command);
   }
   print_names(evaluation.failed, "runs failed and count as zero:");
   for (const std::string& note : evaluation.notes) fmt::print(stderr, "evaluate: {}\n", note);
@@ -140,10 +151,10 @@ evaluation::Evaluation read_evaluation(const Arguments& arguments) {
     progress->show();
   };
   if (arguments.predictions.empty())
-    return results::read_results(arguments.folders, {arguments.dataset, arguments.jobs, on_progress});
+    return results::read_results(arguments.folders, {arguments.dataset, arguments.jobs, on_progress, arguments.names});
   if (arguments.folders.size() > 1) throw_config_error("--predictions takes one data set");
   return results::score_predictions(arguments.folders.front(), arguments.predictions,
-                                    {kFields.at(arguments.field), arguments.jobs, on_progress});
+                                    {kFields.at(arguments.field), arguments.jobs, on_progress, arguments.names});
 }
 
 /// What the manifests of the runs' data sets say.
@@ -181,7 +192,7 @@ int evaluate_folders(const Arguments& arguments) {
   if (arguments.paper) paper = generation_seconds(evaluation);
   const evaluation::GenerationSeconds* generation = paper ? &*paper : nullptr;
   fmt::print("{}", evaluation::format_results(evaluation, kFormats.at(arguments.format), generation));
-  print_gaps(evaluation, arguments.folders);
+  print_gaps(evaluation);
   if (!arguments.html.empty())
     write_file_atomically(arguments.html,
                           evaluation::format_html_report({evaluation, generation, results::labelled_points}));

@@ -1,7 +1,11 @@
 #include "tubebin/results/predictions.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <set>
 
 #include "evaluation/parallel.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
@@ -115,36 +119,63 @@ std::string coverage_note(const std::vector<evaluation::RunScore>& runs) {
       count, 100.0 * sum / static_cast<double>(count), 100.0 * *least->coverage, least->key.scene);
 }
 
-}  // namespace
-
-evaluation::Evaluation score_predictions(const std::string& dataset_path, const std::string& folder,
-                                         const PredictionOptions& options) {
-  const scene::DatasetFiles dataset(dataset_path);
-  const std::vector<std::string> scenes = list_scenes(dataset);
+/// One folder's predictions, added to the evaluation as `method`.
+void score_folder(const scene::DatasetFiles& dataset, const std::vector<std::string>& scenes, const std::string& folder,
+                  const std::string& method, const PredictionOptions& options, evaluation::Evaluation& evaluation) {
   if (!fs::is_directory(folder)) throw_io_error("{}: is no folder", folder);
   std::vector<PredictionFiles> files;
   for (const std::string& scene : scenes) files.push_back(find_prediction(folder, scene));
   if (std::all_of(files.begin(), files.end(), [](const PredictionFiles& f) { return f.labeled.empty(); }))
     throw_io_error("{}: has no prediction for any of the {} scenes of {}; expected {}/{}.pcd or {}/{}/labeled.pcd",
-                   folder, scenes.size(), dataset_path, folder, scenes.front(), folder, scenes.front());
+                   folder, scenes.size(), dataset.dataset(), folder, scenes.front(), folder, scenes.front());
 
-  evaluation::Evaluation evaluation;
-  evaluation.source = folder;
-
-  evaluation.missing_counts_as_zero = true;
-  evaluation.runs.resize(scenes.size());
-  const std::string method = fs::path(folder).lexically_normal().filename().string();
+  std::vector<evaluation::RunScore> runs(scenes.size());
   evaluation::parallel_for(
       scenes.size(), options.jobs,
       [&](std::size_t i) {
         evaluation::RunKey key = evaluation::parse_scene_name(scenes[i]);
-        key.method = method.empty() || method == "." ? "predictions" : method;
-        evaluation.runs[i] = score_scene(dataset, scenes[i], files[i], key, options.field);
+        key.method = method;
+        runs[i] = score_scene(dataset, scenes[i], files[i], key, options.field);
       },
       options.on_progress);
+  if (std::string note = coverage_note(runs); !note.empty()) evaluation.notes.push_back(std::move(note));
+  evaluation.source += (evaluation.source.empty() ? "" : ", ") + folder;
   for (std::size_t i = 0; i < scenes.size(); ++i)
     if (files[i].labeled.empty()) evaluation.missing.push_back(scenes[i]);
-  if (std::string note = coverage_note(evaluation.runs); !note.empty()) evaluation.notes.push_back(std::move(note));
+  std::move(runs.begin(), runs.end(), std::back_inserter(evaluation.runs));
+}
+
+/// The last folder of each path, or the paths where these are not enough to tell them apart.
+std::vector<std::string> prediction_names(const std::vector<std::string>& folders,
+                                          const std::vector<std::string>& given) {
+  if (!given.empty() && given.size() != folders.size())
+    throw_config_error("--name is there {} times for {} folders; give each folder one name, in the same order",
+                       given.size(), folders.size());
+  const auto are_distinct = [](const std::vector<std::string>& names) {
+    return std::set<std::string>(names.begin(), names.end()).size() == names.size();
+  };
+  std::vector<std::string> names = given;
+  if (given.empty())
+    for (const std::string& folder : folders) {
+      const std::string name = fs::path(folder).lexically_normal().filename().string();
+      names.push_back(name.empty() || name == "." ? "predictions" : name);
+    }
+  if (given.empty() && !are_distinct(names)) names = folders;
+  if (!are_distinct(names)) throw_config_error("two predictions have one name: {}", fmt::join(names, ", "));
+  return names;
+}
+
+}  // namespace
+
+evaluation::Evaluation score_predictions(const std::string& dataset_path, const std::vector<std::string>& folders,
+                                         const PredictionOptions& options) {
+  const scene::DatasetFiles dataset(dataset_path);
+  const std::vector<std::string> scenes = list_scenes(dataset);
+  const std::vector<std::string> names = prediction_names(folders, options.names);
+  evaluation::Evaluation evaluation;
+  evaluation.missing_counts_as_zero = true;
+  for (std::size_t i = 0; i < folders.size(); ++i)
+    score_folder(dataset, scenes, folders[i], names[i], options, evaluation);
   return evaluation;
 }
 

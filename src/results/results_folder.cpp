@@ -9,6 +9,7 @@
 #include "evaluation/parallel.hpp"
 #include "results/result_files.hpp"
 #include "results/results_index.hpp"
+#include "results/setting_names.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/scene/dataset_files.hpp"
@@ -110,14 +111,27 @@ struct SceneRuns {
   bool has_truth = false;
 };
 
-SceneRuns read_scene_runs(const std::string& folder, const ResultsIndex& index, const CurrentScene& current,
-                          const std::string& scene, const std::map<std::string, std::string>& failures) {
+/// A results folder, and what its methods are called.
+struct NamedFolder {
+  std::string folder;
+  ResultsIndex index;
+  std::string setting;       ///< empty: it is not compared with another
+  bool has_methods = false;  ///< several methods are there, each in this setting
+
+  std::string name_of(const std::string& method) const {
+    return setting.empty() ? method : has_methods ? method + ", " + setting : setting;
+  }
+};
+
+SceneRuns read_scene_runs(const NamedFolder& named, const CurrentScene& current, const std::string& scene,
+                          const std::map<std::string, std::string>& failures) {
+  const auto& [folder, index, setting, has_methods] = named;
   SceneRuns result;
   result.has_truth = current.truth.has_value();
   for (const std::string& method : index.methods) {
     for (const double ratio : index.ratios) {
       evaluation::RunKey key = evaluation::parse_scene_name(scene);
-      key.method = method;
+      key.method = named.name_of(method);
       key.ratio = ratio;
       const std::string run = run_folder(scene, method, ratio);
       if (fs::exists(folder + "/" + run)) {
@@ -143,19 +157,33 @@ void append(evaluation::Evaluation& evaluation, SceneRuns& scene) {
   move_all(scene.failed, evaluation.failed);
 }
 
-/// What was read from one folder.
+/// The runs that a folder has or is to have.
 struct FolderRuns {
-  std::string folder;
-  std::string conditions;       ///< that its runs were made under
-  std::set<std::string> names;  ///< of the runs that it has or is to have
+  const NamedFolder* named;
+  std::set<std::string> names;
 };
 
-/// One folder's runs, added to the evaluation.
-FolderRuns read_folder(const std::string& folder, const ResultsOptions& options, evaluation::Evaluation& evaluation) {
-  ResultsIndex index = read_index(folder);
-  index.dataset =
-      options.dataset.empty() ? (fs::path(folder) / index.dataset).lexically_normal().string() : options.dataset;
-  const std::map<std::string, std::string> failures = read_failures(folder);
+std::vector<NamedFolder> name_folders(const std::vector<std::string>& folders, const ResultsOptions& options) {
+  std::vector<IndexedFolder> indexed;
+  std::set<std::string> methods;
+  for (const std::string& folder : folders) {
+    indexed.push_back({folder, read_index(folder)});
+    methods.insert(indexed.back().index.methods.begin(), indexed.back().index.methods.end());
+  }
+  const std::vector<std::string> names = setting_names(indexed, options.names);
+  std::vector<NamedFolder> named;
+  for (std::size_t i = 0; i < folders.size(); ++i)
+    named.push_back({folders[i], std::move(indexed[i].index), names[i], methods.size() > 1});
+  for (NamedFolder& folder : named)
+    folder.index.dataset = options.dataset.empty()
+                               ? (fs::path(folder.folder) / folder.index.dataset).lexically_normal().string()
+                               : options.dataset;
+  return named;
+}
+
+std::vector<SceneRuns> read_scenes(const NamedFolder& named, const ResultsOptions& options) {
+  const ResultsIndex& index = named.index;
+  const std::map<std::string, std::string> failures = read_failures(named.folder);
   const scene::DatasetFiles dataset(index.dataset);
   const scene::DatasetHashes hashes(dataset);
   std::vector<SceneRuns> scenes(index.scenes.size());
@@ -163,11 +191,23 @@ FolderRuns read_folder(const std::string& folder, const ResultsOptions& options,
       scenes.size(), options.jobs,
       [&](std::size_t i) {
         const std::string& scene = index.scenes[i];
-        scenes[i] = read_scene_runs(folder, index, read_scene(dataset, hashes, scene), scene, failures);
+        scenes[i] = read_scene_runs(named, read_scene(dataset, hashes, scene), scene, failures);
       },
       options.on_progress);
+  return scenes;
+}
 
-  FolderRuns read{.folder = folder, .conditions = index.conditions(), .names = {}};
+std::string describe_folder(const NamedFolder& named) {
+  const std::string config = named.index.dataset + "/config.yaml";
+  const std::string name = named.setting.empty() ? "" : fmt::format(" ({})", named.setting);
+  return fmt::format("{}{}:\n{}\n", named.folder, name, named.index.configuration()) +
+         (fs::exists(config) ? fmt::format("\n{}:\n{}\n", config, read_file(config)) : "");
+}
+
+/// One folder's runs, added to the evaluation.
+FolderRuns read_folder(const NamedFolder& named, const ResultsOptions& options, evaluation::Evaluation& evaluation) {
+  std::vector<SceneRuns> scenes = read_scenes(named, options);
+  FolderRuns read{.named = &named, .names = {}};
   const std::size_t runs_before = evaluation.runs.size();
   const std::size_t missing_before = evaluation.missing.size();
   std::size_t without_truth = 0;
@@ -176,17 +216,15 @@ FolderRuns read_folder(const std::string& folder, const ResultsOptions& options,
     append(evaluation, scene);
   }
   if (evaluation.runs.size() == runs_before)
-    throw_io_error("{}: has none of the runs that its index.json names", folder);
+    throw_io_error("{}: has none of the runs that its index.json names", named.folder);
   if (without_truth > 0)
     evaluation.notes.push_back(
         fmt::format("{} of {} scenes have no scene.json in {}: they add nothing to centreline errors and "
                     "visibility (--dataset "
                     "DIR says where the data set is)",
-                    without_truth, scenes.size(), index.dataset));
-  evaluation.source += (evaluation.source.empty() ? "" : ", ") + folder;
-  evaluation.configuration += fmt::format("{}:\n{}\n", folder, index.configuration());
-  if (const std::string config = index.dataset + "/config.yaml"; fs::exists(config))
-    evaluation.configuration += fmt::format("\n{}:\n{}\n", config, read_file(config));
+                    without_truth, scenes.size(), named.index.dataset));
+  evaluation.source += (evaluation.source.empty() ? "" : ", ") + named.folder;
+  evaluation.configuration += describe_folder(named);
   for (std::size_t i = runs_before; i < evaluation.runs.size(); ++i) read.names.insert(evaluation.runs[i].key.name());
   read.names.insert(evaluation.missing.begin() + static_cast<std::ptrdiff_t>(missing_before), evaluation.missing.end());
   return read;
@@ -194,13 +232,13 @@ FolderRuns read_folder(const std::string& folder, const ResultsOptions& options,
 
 /// Folders that are to have the same run are parts of one call, and then they must have been made alike.
 void require_same_conditions(const std::vector<FolderRuns>& folders) {
-  std::map<std::string, const FolderRuns*> asked;
+  std::map<std::string, const NamedFolder*> asked;
   for (const FolderRuns& folder : folders)
     for (const std::string& name : folder.names) {
-      const FolderRuns& other = *asked.try_emplace(name, &folder).first->second;
-      if (other.conditions != folder.conditions)
-        throw_io_error("{} and {}: both are to have the run {}, but with another version, seed or options: {} and {}",
-                       other.folder, folder.folder, name, other.conditions, folder.conditions);
+      const NamedFolder& other = *asked.try_emplace(name, folder.named).first->second;
+      if (&other != folder.named && other.index.conditions() != folder.named->index.conditions())
+        throw_io_error("{} and {}: both are to have the run {}, but with {}; give them different names (--name)",
+                       other.folder, folder.named->folder, name, describe_difference(other.index, folder.named->index));
     }
 }
 
@@ -208,7 +246,8 @@ void require_distinct_runs(const evaluation::Evaluation& evaluation) {
   std::set<std::string> names;
   for (const evaluation::RunScore& run : evaluation.runs)
     if (!names.insert(run.key.name()).second)
-      throw_io_error("{}: the run {} is there twice", evaluation.source, run.key.name());
+      throw_io_error("{}: the run {} is there twice; --name A --name B gives each folder a name and compares them",
+                     evaluation.source, run.key.name());
 }
 
 /// Each part's index asks for all runs of the call; what no folder has is missing, once.
@@ -225,18 +264,35 @@ void sort_runs(evaluation::Evaluation& evaluation) {
   });
 }
 
+/// The folders of each call that lacks runs.
+std::vector<std::vector<std::string>> unfinished_calls(const std::vector<FolderRuns>& folders,
+                                                       const std::vector<std::string>& missing) {
+  std::map<std::string, std::vector<std::string>> calls;
+  std::set<std::string> unfinished;
+  for (const auto& [named, names] : folders) {
+    calls[named->setting].push_back(named->folder);
+    if (std::any_of(missing.begin(), missing.end(), [&](const std::string& name) { return names.contains(name); }))
+      unfinished.insert(named->setting);
+  }
+  std::vector<std::vector<std::string>> commands;
+  for (const std::string& setting : unfinished) commands.push_back(calls[setting]);
+  return commands;
+}
+
 }  // namespace
 
 evaluation::Evaluation read_results(const std::vector<std::string>& folders, const ResultsOptions& options) {
+  const std::vector<NamedFolder> named = name_folders(folders, options);
   evaluation::Evaluation evaluation;
   std::vector<FolderRuns> read;
-  for (const std::string& folder : folders) read.push_back(read_folder(folder, options, evaluation));
+  for (const NamedFolder& folder : named) read.push_back(read_folder(folder, options, evaluation));
   require_same_conditions(read);
   require_distinct_runs(evaluation);
   if (folders.size() > 1) {
     keep_really_missing(evaluation);
     sort_runs(evaluation);
   }
+  evaluation.unfinished_calls = unfinished_calls(read, evaluation.missing);
   return evaluation;
 }
 

@@ -149,6 +149,24 @@ TEST_F(EvaluateApp, PerfectPredictionsScoreOneAndMissingOnesZero) {
               AllOf(HasSubstr("1 scenes have no prediction and count as zero"), HasSubstr("A3/002")));
 }
 
+TEST_F(EvaluateApp, TwoProgramsStandSideBySide) {
+  write_scanned_dataset(folder_.path() / "dataset", {"A3/001", "A3/002"});
+  for (const char* scene : {"mine/A3/001.pcd", "yours/A3/001.pcd", "yours/A3/002.pcd"}) {
+    fs::create_directories(fs::path(path(scene)).parent_path());
+    fs::copy_file(path("dataset/A3/" + fs::path(scene).stem().string() + "/cloud.pcd"), path(scene));
+  }
+  const std::string both = "dataset --predictions mine --predictions yours --quiet ";
+  const auto json = nlohmann::json::parse(evaluate(both + "--format json", "2>/dev/null").output);
+  EXPECT_EQ(json["side_by_side"][0]["first"], "mine");
+  EXPECT_EQ(json["side_by_side"][0]["second"], "yours");
+  EXPECT_DOUBLE_EQ(json["side_by_side"][0]["gain"], 0.5);
+  const CommandResult named = evaluate(both + "--name before --name after --html report.html");
+  EXPECT_THAT(named.output, AllOf(HasSubstr("Side by side"), HasSubstr("before"), HasSubstr("+0.5000")));
+  EXPECT_THAT(read_file(path("report.html")), HasSubstr("id=\"side_by_side\""));
+  EXPECT_EQ(evaluate(both + "--name before").exit_code, 2);
+  EXPECT_THAT(evaluate("dataset --predictions mine --predictions mine").output, HasSubstr("have one name: mine, mine"));
+}
+
 TEST_F(EvaluateApp, PredictionsThatFitNoScene) {
   write_scanned_dataset(folder_.path() / "dataset", {"A3/001"});
   fs::create_directory(path("empty"));

@@ -172,6 +172,62 @@ TEST_F(ResultsFolder, ThePaperIsNamedWhereItIsAskedForAlone) {
   }
 }
 
+/// Another call of the same runs, with the radius estimated and the first scene better.
+void write_estimated_results(const fs::path& folder) {
+  fs::copy(folder / "results", folder / "estimated", fs::copy_options::recursive);
+  nlohmann::json index = nlohmann::json::parse(read_file((folder / "estimated/index.json").string()));
+  index["options"]["radius"] = 0.0;
+  testing::write_text(folder / "estimated/index.json", index.dump());
+  const fs::path run = folder / "estimated/A1/001/centerline_0.3/result.json";
+  nlohmann::json result = nlohmann::json::parse(read_file(run.string()));
+  result["contingency"] = {{1, 1, testing::kPointsPerTube}};
+  testing::write_text(run, result.dump());
+}
+
+TEST_F(ResultsFolder, OtherOptionsStandSideBySide) {
+  write_estimated_results(folder_.path());
+  const std::vector<std::string> folders = {results(), (folder_.path() / "estimated").string()};
+  const evaluation::Evaluation evaluation = read_results(folders, {});
+  EXPECT_THAT(evaluation.runs, SizeIs(48));
+  const auto json = nlohmann::json::parse(evaluation::format_results(evaluation, evaluation::TableFormat::json));
+  ASSERT_THAT(json["side_by_side"], SizeIs(2));
+  const nlohmann::json& set_a = json["side_by_side"][0];
+  EXPECT_EQ(set_a["first"], "radius: 0.0125");
+  EXPECT_EQ(set_a["second"], "radius: estimated");
+  EXPECT_EQ(set_a["scenes"], 6);
+  EXPECT_EQ(set_a["better"], 1);
+  EXPECT_EQ(set_a["worse"], 0);
+  // One of six scenes is right at one of two ratios.
+  const double wrong = testing::wrong_points({"A1/001", "A", 1, 1, "centerline", 0.3}) / 1000.0;
+  EXPECT_NEAR(set_a["gain"].get<double>(), wrong / 12.0, 1e-12);
+  EXPECT_EQ(json["side_by_side"][1]["gain"], 0.0);
+  EXPECT_THAT(evaluation::format_results(evaluation, evaluation::TableFormat::csv),
+              AllOf(HasSubstr("radius: 0.0125,A,1,0.3"), HasSubstr("radius: estimated,A,1,0.3")));
+}
+
+TEST_F(ResultsFolder, SettingsHaveTheNamesThatAreGiven) {
+  write_estimated_results(folder_.path());
+  const std::vector<std::string> folders = {results(), (folder_.path() / "estimated").string()};
+  ResultsOptions options;
+  options.names = {"a", "b"};
+  EXPECT_EQ(read_results(folders, options).runs.back().key.method, "b");
+  options.names = {"a"};
+  EXPECT_THROW(read_results(folders, options), ConfigError);
+  options.names = {"a", "a"};
+  EXPECT_THAT(
+      [&] { read_results(folders, options); },
+      ::testing::ThrowsMessage<IoError>(AllOf(HasSubstr("radius: 0.0125 and radius: estimated"), HasSubstr("--name"))));
+}
+
+TEST_F(ResultsFolder, EachCallThatLacksRunsIsNamed) {
+  write_estimated_results(folder_.path());
+  const std::string estimated = (folder_.path() / "estimated").string();
+  fs::remove_all(estimated + "/B2/001");
+  const evaluation::Evaluation evaluation = read_results({results(), estimated}, {});
+  EXPECT_THAT(evaluation.missing, ElementsAre("B2/001 radius: estimated 0.3", "B2/001 radius: estimated 1"));
+  EXPECT_THAT(evaluation.unfinished_calls, ElementsAre(ElementsAre(estimated)));
+}
+
 /// The columns that programs read (docs/metrics.md).
 TEST_F(ResultsFolder, ColumnsOfGroupsStay) {
   const evaluation::Table table = evaluation::group_table(evaluation::summarize(read_results({results()}, {}).runs));

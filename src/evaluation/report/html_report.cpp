@@ -4,6 +4,7 @@
 
 #include "evaluation/report/first_screen.hpp"
 #include "evaluation/report/measures.hpp"
+#include "evaluation/report/side_by_side.hpp"
 #include "tubebin/evaluation/result_plots.hpp"
 #include "tubebin/evaluation/result_tables.hpp"
 
@@ -56,6 +57,11 @@ std::string gaps_html(const Evaluation& evaluation) {
   return html;
 }
 
+std::string side_by_side_html(const Evaluation& evaluation) {
+  const std::vector<Comparison> comparisons = compare_methods(evaluation.runs);
+  return comparisons.empty() ? "" : format_html(side_by_side_table(comparisons));
+}
+
 /// The overview with a sentence beside each measure.
 std::string measures_html(const Evaluation& evaluation) {
   Table table = transpose(overview_table(evaluation), 2);
@@ -94,7 +100,8 @@ std::string paper_html(const ReportInput& input, const std::vector<GroupSummary>
 std::string format_html_report(const ReportInput& input) {
   const Evaluation& evaluation = input.evaluation;
   const std::vector<GroupSummary> groups = summarize(evaluation.runs);
-  const Section sections[] = {{"worst", "Worst scenes", worst_scenes_html(input)},
+  const Section sections[] = {{"side_by_side", "Side by side", side_by_side_html(evaluation)},
+                              {"worst", "Worst scenes", worst_scenes_html(input)},
                               {"scenes", "All scenes", scene_table_html(evaluation)},
                               {"measures", "Measures", measures_html(evaluation)},
                               {"plots", "Plots", plots_html(input, groups)},

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "evaluation/report/side_by_side.hpp"
 #include "tubebin/evaluation/result_tables.hpp"
 
 namespace tubebin::evaluation {
@@ -34,6 +35,23 @@ OrderedJson claims_as_objects(const std::vector<Claim>& claims) {
   return list;
 }
 
+OrderedJson comparisons_as_objects(const std::vector<Comparison>& comparisons) {
+  OrderedJson list = OrderedJson::array();
+  for (const Comparison& one : comparisons)
+    list.push_back({{"first", one.first},
+                    {"second", one.second},
+                    {"set", one.set},
+                    {"scenes", one.scenes},
+                    {"micro_recall_first", one.recall_first},
+                    {"micro_recall_second", one.recall_second},
+                    {"gain", one.gain.mean},
+                    {"gain_low", one.gain.low},
+                    {"gain_high", one.gain.high},
+                    {"better", one.better},
+                    {"worse", one.worse}});
+  return list;
+}
+
 std::string format_json(const Evaluation& evaluation, const std::vector<GroupSummary>& groups,
                         const GenerationSeconds* generation) {
   OrderedJson json;
@@ -43,6 +61,7 @@ std::string format_json(const Evaluation& evaluation, const std::vector<GroupSum
   json["failed"] = evaluation.failed;
   json["notes"] = evaluation.notes;
   json["overview"] = rows_as_objects(overview_table(evaluation));
+  json["side_by_side"] = comparisons_as_objects(compare_methods(evaluation.runs));
   json["groups"] = rows_as_objects(group_table(groups));
   json["by_visibility"] = rows_as_objects(visibility_table(evaluation));
   if (generation != nullptr) {
@@ -128,6 +147,8 @@ std::string format_results(const Evaluation& evaluation, TableFormat format, con
   if (format == TableFormat::csv) return format_csv(group_table(groups));
   std::vector<Table> tables =
       generation != nullptr ? paper_tables(evaluation, groups, *generation) : condition_tables(groups);
+  if (const auto comparisons = compare_methods(evaluation.runs); !comparisons.empty())
+    tables.insert(tables.begin(), side_by_side_table(comparisons));
   tables.insert(tables.begin(), transpose(overview_table(evaluation), 2));
   for (Table& table : detail_tables(evaluation, groups)) tables.push_back(std::move(table));
   std::string text;
