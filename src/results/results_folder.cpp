@@ -269,10 +269,12 @@ std::vector<std::vector<std::string>> unfinished_calls(const std::vector<FolderR
                                                        const std::vector<std::string>& missing) {
   std::map<std::string, std::vector<std::string>> calls;
   std::set<std::string> unfinished;
-  for (const auto& [named, names] : folders) {
-    calls[named->setting].push_back(named->folder);
-    if (std::any_of(missing.begin(), missing.end(), [&](const std::string& name) { return names.contains(name); }))
-      unfinished.insert(named->setting);
+  for (const FolderRuns& folder : folders) {
+    const std::string& setting = folder.named->setting;
+    calls[setting].push_back(folder.named->folder);
+    if (std::any_of(missing.begin(), missing.end(),
+                    [&](const std::string& name) { return folder.names.contains(name); }))
+      unfinished.insert(setting);
   }
   std::vector<std::vector<std::string>> commands;
   for (const std::string& setting : unfinished) commands.push_back(calls[setting]);
