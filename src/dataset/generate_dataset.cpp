@@ -52,7 +52,8 @@ std::string describe_failure(const SceneId& id, const jobs::JobOutcome& outcome)
 void record_scene(DatasetFolder& folder, const jobs::JobOutcome& outcome) {
   ManifestRecord record = parse_manifest_record(outcome.text);
   record.rejected = outcome.failed;
-  record.seconds["total"] = outcome.seconds;
+  const auto preview = record.seconds.find("preview");
+  record.seconds["total"] = outcome.seconds - (preview == record.seconds.end() ? 0.0 : preview->second);
   folder.manifest().append(record);
 }
 

@@ -101,7 +101,10 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
                            .further_windows = std::move(scanned.further_windows),
                            .relations = std::move(relations)};
   result.content.cloud = std::move(scanned.cloud);
-  if (config.output.clean_cloud) result.content.clean_cloud = scan::scan_exactly_from_all(scene).cloud;
+  if (config.output.clean_cloud) {
+    result.content.clean_cloud = scan::scan_exactly_from_all(scene).cloud;
+    clock.end_stage("clean_cloud");
+  }
 
   if (config.output.preview) {
     result.content.images["preview.png"] = png(render::render_preview(scene, kPreviewWidth, kPreviewHeight));

@@ -1,45 +1,52 @@
 #include "tubebin/dataset/timing_table.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace tubebin::dataset {
 namespace {
 
-struct Mean {
-  double sum = 0.0;
+struct Sums {
+  double seconds = 0.0;  ///< without previews
+  double preview = 0.0;
   int count = 0;
 };
 
-std::map<int, Mean> mean_seconds(const Manifest& manifest, const std::vector<SceneId>& scenes) {
-  std::map<int, Mean> means;
+std::map<int, Sums> sums_by_tubes(const Manifest& manifest, const std::vector<SceneId>& scenes) {
+  std::map<int, Sums> sums;
   for (const SceneId& scene : scenes) {
     const ManifestRecord* record = manifest.find(scene.name());
     if (record == nullptr || !record->seconds.contains("total")) continue;
-    Mean& mean = means[scene.tubes];
-    mean.sum += record->seconds.at("total");
-    ++mean.count;
+    Sums& sum = sums[scene.tubes];
+    sum.seconds += record->seconds.at("total");
+    if (const auto preview = record->seconds.find("preview"); preview != record->seconds.end())
+      sum.preview += preview->second;
+    ++sum.count;
   }
-  return means;
+  return sums;
 }
 
 }  // namespace
 
 std::string format_timing_table(const Manifest& manifest, const std::vector<SceneId>& scenes,
                                 const SecondsByTubes& paper_seconds) {
-  const std::map<int, Mean> means = mean_seconds(manifest, scenes);
-  if (means.empty()) return "";
-  const std::string& set = scenes.front().set;
+  const std::map<int, Sums> sums = sums_by_tubes(manifest, scenes);
+  if (sums.empty()) return "";
+  const bool has_previews =
+      std::any_of(sums.begin(), sums.end(), [](const auto& sum) { return sum.second.preview > 0.0; });
   std::string text = fmt::format(
       "Average time to generate a test case of set {} (seconds of one worker process, rejected attempts "
       "included),\n"
-      "beside Table 1 of the paper\n{:>6} {:>7} {:>9} {:>9} {:>9}\n",
-      set, "tubes", "cases", "here", "paper", "speed-up");
-  for (const auto& [tubes, mean] : means) {
-    const double here = mean.sum / mean.count;
-    text += fmt::format("{:>6} {:>7} {:>9.3f}", tubes, mean.count, here);
+      "beside Table 1 of the paper{}\n{:>6} {:>7} {:>9} {:>9} {:>9}{}\n",
+      scenes.front().set, has_previews ? "; pictures, which it has none of, apart" : "", "tubes", "cases", "here",
+      "paper", "speed-up", has_previews ? "  pictures" : "");
+  for (const auto& [tubes, sum] : sums) {
+    const double here = sum.seconds / sum.count;
+    text += fmt::format("{:>6} {:>7} {:>9.3f}", tubes, sum.count, here);
     if (const auto paper = paper_seconds.find(tubes); paper != paper_seconds.end())
-      text += fmt::format(" {:>9.2f} {:>8.0f}x\n", paper->second, paper->second / here);
-    else text += fmt::format(" {:>9} {:>9}\n", "-", "-");
+      text += fmt::format(" {:>9.2f} {:>8.0f}x", paper->second, paper->second / here);
+    else text += fmt::format(" {:>9} {:>9}", "-", "-");
+    text += has_previews ? fmt::format(" {:>9.3f}\n", sum.preview / sum.count) : "\n";
   }
   return text;
 }

@@ -175,6 +175,8 @@ TEST_F(GenerateDataset, DrawsPreviewsThatNeitherChangeNorDependOnTheRest) {
       EXPECT_TRUE(png.mapped().starts_with("\x89PNG")) << scene << picture;
     }
   EXPECT_EQ(with_pictures, scene_files(data_));
+  const Manifest manifest(folder_ / "one");
+  for (const auto& [id, record] : manifest.records()) EXPECT_GT(record.seconds.at("preview"), 0.0);
 }
 
 TEST_F(GenerateDataset, SaysWhyATubeDoesNotFit) {

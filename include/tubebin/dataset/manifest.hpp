@@ -25,7 +25,7 @@ struct ManifestRecord {
   int tubes = 0;
   std::uint64_t seed = 0;                     ///< of the attempt that succeeded
   std::vector<jobs::FailedAttempt> rejected;  ///< the attempts before it
-  std::map<std::string, double> seconds;      ///< wall-clock time by stage, and "total" with all attempts
+  std::map<std::string, double> seconds;      ///< wall-clock time by stage; "total" has all attempts, but no "preview"
   physics::DropFigures physics;
   std::map<ConfinedPath, FileRecord> files;  ///< by name in the scene's folder
   std::optional<ConfinedPath> pack = {};     ///< "00002-of-00004.tar" that holds the files instead of a folder

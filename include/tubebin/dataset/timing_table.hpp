@@ -14,6 +14,7 @@ namespace tubebin::dataset {
 using SecondsByTubes = std::map<int, double>;
 
 /// Means over those of the scenes that the manifest records, beside the paper's for that set; empty where it records none.
+/// Previews, which the paper does not make, have a column of their own where there are any.
 std::string format_timing_table(const Manifest& manifest, const std::vector<SceneId>& scenes,
                                 const SecondsByTubes& paper_seconds);
 
