@@ -144,6 +144,26 @@ TEST(Pipeline, EstimatesTheRadiusThatNobodyStates) {
   EXPECT_EQ(result.tubes.size(), 4u);
 }
 
+TEST(Pipeline, FindsThreeRadiiInAKnownBin) {
+  const auto thick = [](double radius, double y) {
+    scene::PlacedTube placed = tube_along({{-0.2, y, radius}, {0, y + 0.02, radius}, {0.2, y, radius}});
+    placed.tube.radius = radius;
+    return placed;
+  };
+  // A quarter apart: neither's exclusion of its own surroundings hides the other.
+  const scene::Scene scene = scene_of({thick(0.0125, -0.15), thick(0.0125, -0.1), thick(0.0125, -0.05),
+                                       thick(0.01, 0.0), thick(0.01, 0.05), thick(0.008, 0.1), thick(0.008, 0.14)});
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
+  ModelingResult result = model_tubes(input_of(cloud, scene.bin), ModelingOptions{});
+  std::ranges::sort(result.radii, std::greater<>());
+  ASSERT_EQ(result.radii.size(), 3u);
+  EXPECT_NEAR(result.radii[0], 0.0125, 0.0001);
+  EXPECT_NEAR(result.radii[1], 0.01, 0.0001);
+  EXPECT_NEAR(result.radii[2], 0.008, 0.0001);
+  EXPECT_EQ(result.tubes.size(), 7u);
+  EXPECT_GE(micro_recall_of(result, cloud), 0.99);
+}
+
 TEST(Pipeline, KeepsTheStatedShareOfThePoints) {
   const scene::Scene scene = crossing();
   const cloud::Cloud cloud = scan::scan(scene).cloud;

@@ -43,6 +43,26 @@ TEST(FlatRegions, FindsATiltedPlaneAndItsNoise) {
   EXPECT_NEAR(regions[0].noise, 0.0002 * std::abs(normal.z()), 0.00002);
 }
 
+/// Scanners smooth: a pixel's noise is the mean over the 5 by 5 pixels about it.
+TEST(FlatRegions, NoiseThatNeighborsShareHidesNoFloor) {
+  constexpr int kColumns = 404, kRows = 304;
+  Random random(7);
+  std::vector<double> white(static_cast<std::size_t>(kColumns * kRows));
+  for (double& value : white) value = 0.002 * random.normal();
+  const auto smoothed = [&](double u, double v) {
+    const int column = static_cast<int>(std::lround(u / kStep)) + 200,
+              row = static_cast<int>(std::lround(v / kStep)) + 150;
+    double sum = 0.0;
+    for (int r = row; r < row + 5; ++r)
+      for (int c = column; c < column + 5; ++c) sum += white[static_cast<std::size_t>(r * kColumns + c)];
+    return sum / 25.0;
+  };
+  const auto regions = regions_of(picture([&](double u, double v) { return 1.0 + smoothed(u, v); }, 0.0));
+  ASSERT_EQ(regions.size(), 1u);
+  EXPECT_NEAR(regions[0].plane.offset, -1.0, 1e-4);
+  EXPECT_GT(regions[0].area, 0.9 * (400 * kStep) * (300 * kStep));
+}
+
 TEST(FlatRegions, AFloorInTwoPartsIsOneAndAStepIsNone) {
   const auto parts = regions_of(picture([](double u, double) { return std::abs(u) < 0.05 ? 0.9 : 1.0; }, 0.0001));
   ASSERT_EQ(parts.size(), 2u);  // the floor on both sides, and the top of what stands on it

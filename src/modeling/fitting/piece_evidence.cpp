@@ -115,6 +115,10 @@ PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point
   return evidence;
 }
 
+bool has_other_radius(const PieceEvidence& evidence) {
+  return std::abs(evidence.curvature - 1.0) > 0.15 + 4.0 * evidence.curvature_error;
+}
+
 bool is_tube(const PieceEvidence& evidence, double radius, double noise) {
   if (evidence.sigma > 3.0 * noise + radius / 12.0) return false;
   if (evidence.empty > 0.3) return false;

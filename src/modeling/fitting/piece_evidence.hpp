@@ -20,6 +20,9 @@ struct PieceEvidence {
 PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point> points,
                             const OcclusionTest& occlusion);
 
+/// Whether the points are clearly of another curvature than a tube's of this radius.
+bool has_other_radius(const PieceEvidence& evidence);
+
 /// Whether a tube explains the evidence better than any flat strip or chance: curved like a tube of this radius, as far
 /// as the points can tell, with points on its surface and no sides that the scanner saw through.
 bool is_tube(const PieceEvidence& evidence, double radius, double noise);

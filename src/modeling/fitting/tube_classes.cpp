@@ -48,16 +48,15 @@ class ClassFinder {
   std::vector<TubeClass> find_all() {
     std::vector<TubeClass> classes;
     std::vector<double> tried;
-    const std::size_t enough = cloud_.points.size() / 50;
+    const std::size_t enough = cloud_.points.size() / 100;
     for (std::size_t k = 0; k < kMostTries && classes.size() < kMostClasses; ++k) {
       FilteredCloud& left = classes.empty() ? cloud_ : rest_;
       if (!classes.empty() && left.points.size() < enough) break;
       const double seen = likeliest_radius(left, tried, enough);
       if (seen <= 0.0) break;
-      tried.push_back(seen);
       TubeClass found = refined_class(left, seen);
+      tried.push_back(found.pieces.empty() ? seen : found.radius);
       if (found.pieces.empty()) continue;
-      tried.push_back(found.radius);
       set_aside(found);
       classes.push_back(std::move(found));
     }
@@ -125,7 +124,9 @@ class ClassFinder {
     double information = 0.0;
     for (TubePiece& piece : find_centerline_pieces(sample, segment_by_votes(sample, radius), projection_, radius)) {
       const PieceEvidence evidence = examine_piece(piece, sample.points, occlusion);
-      if (!background_is_known_ && !is_tube(evidence, radius, noise_)) continue;
+      // Before a known background all but what other tubes leave over is tube.
+      const bool all_is_tube = background_is_known_ && rest_.points.empty();
+      if (all_is_tube ? has_other_radius(evidence) : !is_tube(evidence, radius, noise_)) continue;
       // Of two normal errors, the plane's is that many standard deviations.
       const double deviations = evidence.curvature / evidence.curvature_error;
       piece.evidence = 0.5 * deviations * deviations;

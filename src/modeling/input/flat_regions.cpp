@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -109,42 +110,85 @@ class Blocks {
   std::vector<FittedPlane> planes_;
 };
 
+/// A square of kSize by kSize blocks, and how far its points are off planes.
+template <int kSize>
+class Window {
+ public:
+  Window(const Blocks& blocks, int row, int column) {
+    for (int k = 0; k < kSize * kSize; ++k) {
+      members_[k] = static_cast<std::size_t>((row + k / kSize) * blocks.columns() + column + k % kSize);
+      is_measured_ = is_measured_ && blocks.has_plane(members_[k]);
+    }
+    if (!is_measured_) return;
+    for (const std::size_t block : members_) {
+      within_ += blocks.plane(block).mean_square * blocks.moments(block).count;
+      moments_ += blocks.moments(block);
+    }
+    plane_ = FittedPlane(moments_);
+  }
+
+  bool is_measured() const { return is_measured_; }
+  const std::array<std::size_t, kSize * kSize>& members() const { return members_; }
+  const FittedPlane& plane() const { return plane_; }
+  /// The variance of the points about the window's plane, which takes three degrees of freedom, square metres.
+  double variance() const { return plane_.mean_square * moments_.count / (moments_.count - 3.0); }
+  /// The variance of the points about their blocks' planes, square metres.
+  double variance_within_blocks() const { return within_ / (moments_.count - 3.0 * double(kSize * kSize)); }
+
+ private:
+  std::array<std::size_t, kSize * kSize> members_;
+  bool is_measured_ = true;
+  RegionMoments moments_;
+  double within_ = 0.0;
+  FittedPlane plane_;
+};
+
+/// How many times the noise's variance is that within blocks, whose planes follow the noise where neighbours share it
+/// (scanners smooth): the median over windows of two by two blocks on surfaces that are flat over four by four.
+double noise_beyond_blocks(const Blocks& blocks) {
+  constexpr std::size_t kFew = 20;
+  std::vector<double> ratios;
+  for (int row = 0; row + 3 < blocks.rows(); row += 2)
+    for (int column = 0; column + 3 < blocks.columns(); column += 2) {
+      const Window<4> whole(blocks, row, column);
+      if (!whole.is_measured()) continue;
+      double variance = 0.0;
+      for (const int r : {row, row + 2})
+        for (const int c : {column, column + 2}) variance += Window<2>(blocks, r, c).variance() / 4.0;
+      if (whole.variance() < 1.4 * variance) ratios.push_back(variance / whole.variance_within_blocks());
+    }
+  return ratios.size() < kFew ? 1.0 : std::max(median(ratios), 1.0);
+}
+
 /// The flattest window of two by two blocks that each block is part of: where it is no less flat than its blocks are,
 /// the surface is a plane there.
 class FlatWindows {
  public:
-  explicit FlatWindows(const Blocks& blocks) : best_(blocks.size()) {
+  explicit FlatWindows(const Blocks& blocks)
+      : noise_beyond_blocks_(modeling::noise_beyond_blocks(blocks)), best_(blocks.size()) {
     for (int row = 0; row + 1 < blocks.rows(); ++row)
       for (int column = 0; column + 1 < blocks.columns(); ++column) look_at(blocks, row, column);
   }
 
   bool is_flat(std::size_t block) const { return std::isfinite(best_[block].mean_square); }
   const FittedPlane& plane(std::size_t block) const { return best_[block]; }
+  double noise_beyond_blocks() const { return noise_beyond_blocks_; }
 
  private:
   void look_at(const Blocks& blocks, int row, int column) {
-    const auto first = static_cast<std::size_t>(row * blocks.columns() + column);
-    const auto columns = static_cast<std::size_t>(blocks.columns());
-    const std::size_t members[] = {first, first + 1, first + columns, first + columns + 1};
-    RegionMoments sum;
-    double within = 0.0;
-    for (const std::size_t b : members) {
-      if (!blocks.has_plane(b)) return;
-      within += blocks.plane(b).mean_square * blocks.moments(b).count;
-      sum += blocks.moments(b);
-    }
-    // Three of a block's degrees of freedom go into its plane.
-    within /= sum.count - 12.0;
-    const FittedPlane plane(sum);
-    const double spacing = blocks.spacing(first);
+    const Window<2> window(blocks, row, column);
+    if (!window.is_measured()) return;
+    const double spacing = blocks.spacing(window.members().front());
+    const double noise = noise_beyond_blocks_ * window.variance_within_blocks();
     // A parabola x^2 / 2 r over a width w is w^2 / (27 r) off its best line, root mean square: eight spacings of a
     // surface with r = 80 spacings make 0.03 spacings, noise apart. The noise of 64 points varies by a sixth.
-    if (plane.mean_square * sum.count / (sum.count - 3.0) > 1.4 * within + 0.0009 * spacing * spacing) return;
-    if (plane.mean_square > 0.25 * spacing * spacing) return;
-    for (const std::size_t b : members)
-      if (plane.mean_square < best_[b].mean_square) best_[b] = plane;
+    if (window.variance() > 1.4 * noise + 0.0009 * spacing * spacing) return;
+    if (window.plane().mean_square > 0.25 * spacing * spacing) return;
+    for (const std::size_t b : window.members())
+      if (window.plane().mean_square < best_[b].mean_square) best_[b] = window.plane();
   }
 
+  double noise_beyond_blocks_;
   std::vector<FittedPlane> best_;
 };
 
@@ -163,9 +207,10 @@ class Region {
   }
   /// What is wider than any strip of a tube may be warped. What is narrower has to be flatter than a strip of the thickest
   /// tube, and of so many points that they can tell.
-  bool is_flat(const Blocks& all) const {
+  bool is_flat(const Blocks& all, const FlatWindows& windows) const {
     const double spacing = all.spacing(blocks.front());
-    const double noise = within / (moments.count - 3.0 * static_cast<double>(blocks.size()));
+    const double noise =
+        windows.noise_beyond_blocks() * within / (moments.count - 3.0 * static_cast<double>(blocks.size()));
     const double across = width(spacing);
     // Within h of a plane, a tube's strip is 2 sqrt(2 r h) wide.
     const double strip = 2.0 * std::sqrt(2.0 * kThickest * spacing * 2.0 * (std::sqrt(noise) + kOnPlane * spacing));
@@ -196,7 +241,7 @@ class RegionGrower {
     for (const std::uint32_t seed : seeds()) {
       if (is_taken_[seed]) continue;
       Region region = grow(seed);
-      if (region.blocks.size() >= kLeastBlocks && region.is_flat(blocks_)) {
+      if (region.blocks.size() >= kLeastBlocks && region.is_flat(blocks_, windows_)) {
         regions.push_back(std::move(region));
       } else {
         for (const std::uint32_t block : region.blocks) is_taken_[block] = false;
@@ -264,7 +309,7 @@ class RegionGrower {
 };
 
 /// Tubes cut a floor into many regions of one plane.
-std::vector<Region> merge_coplanar(std::vector<Region> regions, const Blocks& blocks) {
+std::vector<Region> merge_coplanar(std::vector<Region> regions, const Blocks& blocks, const FlatWindows& windows) {
   std::ranges::sort(regions, [](const Region& a, const Region& b) { return a.moments.count > b.moments.count; });
   std::vector<Region> merged;
   for (Region& region : regions) {
@@ -277,7 +322,7 @@ std::vector<Region> merge_coplanar(std::vector<Region> regions, const Blocks& bl
       both.within += region.within;
       both.blocks.insert(both.blocks.end(), region.blocks.begin(), region.blocks.end());
       both.plane = FittedPlane(both.moments);
-      if (!both.is_flat(blocks)) return false;
+      if (!both.is_flat(blocks, windows)) return false;
       larger = std::move(both);
       return true;
     };
@@ -329,7 +374,7 @@ std::vector<FlatRegion> find_flat_regions(const ViewProjection& projection, std:
   const Blocks blocks(points, images, spacing, origin, viewpoint);
   const FlatWindows windows(blocks);
   std::vector<FlatRegion> flat;
-  for (const Region& region : merge_coplanar(RegionGrower(blocks, windows).grow_all(), blocks)) {
+  for (const Region& region : merge_coplanar(RegionGrower(blocks, windows).grow_all(), blocks, windows)) {
     FlatRegion found = flat_region(region, blocks, origin, viewpoint);
     // Longer than the thickest tube there may be is wide: a tube's flat end is no wall.
     if (found.half_extents[0] > 42.0 * blocks.spacing(region.blocks.front())) flat.push_back(found);
