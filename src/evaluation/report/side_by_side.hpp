@@ -20,8 +20,8 @@ struct Comparison {
   int scenes = 0;
   double recall_first = 0.0;  ///< micro-recall
   double recall_second = 0.0;
-  Interval gain;   ///< second - first, scene by scene
-  int better = 0;  ///< scenes in which the second is better
+  Interval gain = {};  ///< second - first, scene by scene
+  int better = 0;      ///< scenes in which the second is better
   int worse = 0;
 };
 

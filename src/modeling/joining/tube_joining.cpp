@@ -286,14 +286,14 @@ class Joiner {
     chains_ = std::move(kept);
   }
 
-  /// Where tubes branch, one in thirty pieces shows it: what meets another's side is as long as two diameters, longer
-  /// than the bits of surface beside bends. Of chance one in three hundred does.
+  /// Where tubes branch, one in thirty pieces shows it, and more than one: what meets another's side is as long as two
+  /// diameters, longer than the bits of surface beside bends. Of chance one in three hundred does.
   void decide_whether_tubes_branch() {
     const auto pieces = std::count_if(pieces_.begin(), pieces_.end(), [](const auto& p) { return !is_fragment(p); });
     std::size_t branches = 0;
     for (std::uint32_t end = 0; end < ends_.size(); ++end)
       branches += ends_[end].is_on_side && lengths_[end / 2] >= 4.0 * radius_;
-    tubes_branch_ = branches > 0 && 30 * branches >= static_cast<std::size_t>(pieces);
+    tubes_branch_ = branches >= 2 && 30 * branches >= static_cast<std::size_t>(pieces);
     if (!tubes_branch_)
       for (PieceEnd& end : ends_) end.is_on_side = false;
   }
