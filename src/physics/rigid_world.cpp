@@ -35,6 +35,7 @@ dMass to_ode(const tube::MassProperties& properties) {
 }  // namespace
 
 struct RigidWorld::Impl {
+  dThreadingImplementationID threading = nullptr;  ///< its own: worlds that share one can't step on several threads
   dWorldID world = nullptr;
   PhysicsOptions options;
   scene::Bin bin;
@@ -164,13 +165,19 @@ RigidWorld::RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene:
   impl_->bin = bin;
   impl_->boxes = collision_boxes(bin);
   impl_->tubes = tubes;
+  impl_->threading = dThreadingAllocateSelfThreadedImplementation();
   impl_->world = dWorldCreate();
+  dWorldSetStepThreadingImplementation(impl_->world, dThreadingImplementationGetFunctions(impl_->threading),
+                                       impl_->threading);
   dWorldSetGravity(impl_->world, 0, 0, -options.gravity);
   dWorldSetDamping(impl_->world, options.damping_linear, options.damping_angular);
   for (const scene::PlacedTube& tube : tubes) impl_->add_body(tube);
 }
 
-RigidWorld::~RigidWorld() { dWorldDestroy(impl_->world); }
+RigidWorld::~RigidWorld() {
+  dWorldDestroy(impl_->world);
+  dThreadingFreeImplementation(impl_->threading);
+}
 
 void RigidWorld::step(double time_step) {
   impl_->solve(time_step);

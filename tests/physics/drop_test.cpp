@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <thread>
 
 #include "physics/rest_check.hpp"
 #include "physics/rest_proof.hpp"
@@ -151,6 +153,22 @@ TEST(Drop, TheSeedDecidesWhateverRanBefore) {
   ASSERT_EQ(first.tubes.size(), second.tubes.size());
   for (std::size_t i = 0; i < first.tubes.size(); ++i)
     EXPECT_EQ(first.tubes[i].world_from_tube.matrix(), second.tubes[i].world_from_tube.matrix());
+}
+
+TEST(Drop, ThreadsDoNotDisturbEachOther) {
+  Random random(23);
+  const std::vector<tube::Tube> tubes = tube::generate_tubes(4, {}, random);
+  const DropResult alone = drop_tubes(tubes, scene::Bin{}, PhysicsOptions{}, 3);
+  std::array<DropResult, 4> together;
+  std::vector<std::thread> threads;
+  for (DropResult& result : together)
+    threads.emplace_back([&] { result = drop_tubes(tubes, scene::Bin{}, PhysicsOptions{}, 3); });
+  for (std::thread& thread : threads) thread.join();
+  for (const DropResult& result : together) {
+    ASSERT_EQ(result.tubes.size(), alone.tubes.size()) << result.detail;
+    for (std::size_t i = 0; i < alone.tubes.size(); ++i)
+      EXPECT_EQ(result.tubes[i].world_from_tube.matrix(), alone.tubes[i].world_from_tube.matrix());
+  }
 }
 
 TEST(Drop, ATubeThatFallsBesideTheBinIsReported) {

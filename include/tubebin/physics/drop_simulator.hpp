@@ -84,7 +84,7 @@ struct DropResult {
 };
 
 /// Spawns the tubes above the bin, lets them fall together until all are at rest, and checks the result.
-/// The same tubes, options and seed give the same result, whatever ran before in this process.
+/// The same tubes, options and seed give the same result, whatever ran before or runs on other threads of this process.
 DropResult drop_tubes(const std::vector<tube::Tube>& tubes, const scene::Bin& bin, const PhysicsOptions& options,
                       std::uint64_t seed);
 
