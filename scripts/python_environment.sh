@@ -8,7 +8,7 @@ requirements=tests/requirements.txt
 folder=${XDG_CACHE_HOME:-$HOME/.cache}/tubebin/python-$(sha256sum "$requirements" | cut -c 1-12)
 
 if [ ! -e "$folder/complete" ]; then
-  scripts/install_dependencies.sh python3-venv >&2
+  scripts/install_dependencies.sh python3-venv python3-dev >&2
   echo "Making the tests' Python environment in $folder (about a minute)" >&2
   rm -rf "$folder"
   python3 -m venv "$folder"

@@ -1,0 +1,42 @@
+// The scenes of a data set, loose or packed.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "scene.hpp"
+#include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/results/cloud_files.hpp"
+
+namespace tubebin::python {
+namespace {
+
+using scene::DatasetFiles;
+
+std::vector<std::string> names_of(const DatasetFiles& files) {
+  std::vector<std::string> names;
+  for (const results::CloudFile& cloud : results::find_clouds(files)) names.push_back(cloud.scene);
+  return names;
+}
+
+cloud::Cloud read_cloud(const DatasetFiles& files, const std::string& name) {
+  const std::string file = files.cloud_of(name);
+  return cloud::parse_cloud(files.read(name, file), files.place(name, file));
+}
+
+std::optional<Scene> read_scene(const DatasetFiles& files, const std::string& name) {
+  if (!files.has(name, "scene.json")) return std::nullopt;
+  return Scene{scene::parse_scene_json(files.read(name, "scene.json"), files.place(name, "scene.json"))};
+}
+
+}  // namespace
+
+void bind_dataset(nb::module_& module) {
+  const nb::call_guard<nb::gil_scoped_release> without_lock;
+  nb::class_<DatasetFiles>(module, "DatasetFiles")
+      .def(nb::init<const std::string&>(), nb::arg("folder"), without_lock)
+      .def("names", &names_of, without_lock)
+      .def("read_cloud", &read_cloud, nb::arg("name"), without_lock)
+      .def("read_scene", &read_scene, nb::arg("name"), without_lock);
+}
+
+}  // namespace tubebin::python

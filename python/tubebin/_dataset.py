@@ -1,0 +1,58 @@
+"""Scenes of a data set by number or name."""
+
+from __future__ import annotations
+
+import operator
+import os
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+
+from . import _core
+
+
+class Sample:
+    """One scene of a data set; its files are read when they are asked for."""
+
+    def __init__(self, files: _core.DatasetFiles, name: str) -> None:
+        self._files = files
+        self.name = name  #: "A10/007": set A, ten tubes, case 7
+
+    @cached_property
+    def cloud(self) -> _core.Cloud:
+        """The cloud as it was written, with the ground truth's labels. Raises IoError."""
+        return self._files.read_cloud(self.name)
+
+    @cached_property
+    def scene(self) -> _core.Scene | None:
+        """What scene.json says; None where there is none. Raises IoError."""
+        return self._files.read_scene(self.name)
+
+
+class Dataset(Sequence[Sample]):
+    """The scenes of a data set's folder, loose or packed, or of a single pack; scenes of fewer tubes first.
+
+    dataset[3], dataset["A10/007"] and iteration read nothing yet: each Sample reads what it is asked for, wherever it
+    lies in its pack. Scenes that are added later are not seen. Raises IoError where the folder has no scene.
+    """
+
+    def __init__(self, folder: str | os.PathLike[str]) -> None:
+        self.folder = os.fspath(folder)
+        self._files = _core.DatasetFiles(self.folder)
+        self.names: list[str] = self._files.names()  #: of all scenes, in order
+        self._known = frozenset(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __getitem__(self, key: int | str) -> Sample:  # type: ignore[override]  # no slices
+        if not isinstance(key, str):
+            return Sample(self._files, self.names[operator.index(key)])
+        if key not in self._known:
+            raise KeyError(f"{self.folder}: has no scene {key}")
+        return Sample(self._files, key)
+
+    def __iter__(self) -> Iterator[Sample]:
+        return (Sample(self._files, name) for name in self.names)
+
+    def __reduce__(self) -> tuple[type[Dataset], tuple[str]]:
+        return (type(self), (self.folder,))  # for processes of its own, as a data loader starts them

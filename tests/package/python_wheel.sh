@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# The Python package as a user gets it: the wheel is built, made to carry its libraries, installed into an environment that
+# has numpy alone, and used there. Then python/tests and mypy run on it. Skips (77) where the tools or numpy can't be had.
+# Usage: tests/package/python_wheel.sh BUILD_DIR
+set -euo pipefail
+source=$(realpath "$(dirname "$0")/../..")
+build=$(realpath "$1")
+python3 -c 'import auditwheel, mypy, nanobind, pytest, scikit_build_core' || exit 77
+work=$(mktemp -d /tmp/tubebin_wheel_XXXXXX)
+trap 'rm -rf "$work"' EXIT
+python3 -m venv "$work/bare"
+"$work/bare/bin/pip" install --quiet --disable-pip-version-check --retries 1 numpy 2> "$work/log" ||
+  { echo "numpy can't be fetched: $(tail -1 "$work/log")"; exit 77; }
+
+export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
+python3 -m pip wheel --disable-pip-version-check --no-build-isolation --no-deps -C build-dir="$build/python-wheel" \
+  --wheel-dir "$work" "$source" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+python3 -m auditwheel repair --wheel-dir "$work/repaired" "$work"/tubebin-*.whl 2> "$work/log" ||
+  { cat "$work/log"; exit 1; }
+wheel=$(echo "$work"/repaired/tubebin-*.whl)
+megabytes=$(($(stat -c %s "$wheel") / 1000000))
+echo "$(basename "$wheel"): $megabytes MB, $(($(stat -c %s "$work"/tubebin-*.whl) / 1000)) kB without libraries"
+[ "$megabytes" -le 55 ] || { echo "docs/python.md says 48 MB"; exit 1; }
+
+"$work/bare/bin/pip" install --quiet --disable-pip-version-check --no-index "$wheel"
+cd "$work"
+"$work/bare/bin/python" - << 'END'
+import re
+import tubebin
+
+cloud = tubebin.generate({}, tubes=2).scan()
+model = tubebin.model(cloud.points, cloud.viewpoint)
+assert tubebin.evaluate(cloud.labels, model.labels).micro_recall > 0.95
+loaded = re.findall(r"/usr/lib.*/(lib(?:embree|ode|pcl|archive|yaml|fmt|sleef|tbb).*)", open("/proc/self/maps").read())
+assert not loaded, f"of the system, not of the wheel: {set(loaded)}"
+END
+
+# From here on the tools of the tests are there, too.
+python3 -c 'import site; print(site.getsitepackages()[0])' > "$(echo "$work"/bare/lib/python3*/site-packages)/tools.pth"
+cp "$source/pyproject.toml" .
+cp -r "$source/python/tests" .
+"$work/bare/bin/python" -m mypy -p tubebin
+MYPYPATH=tests "$work/bare/bin/python" -m mypy tests
+TUBEBIN_PROGRAMS=$build/bin TUBEBIN_SOURCE=$source "$work/bare/bin/python" -m pytest --quiet -p no:cacheprovider tests
