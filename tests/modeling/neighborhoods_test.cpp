@@ -8,7 +8,7 @@
 #include <map>
 #include <numbers>
 
-#include "modeling/built_scene.hpp"
+#include "modeling/built_surface.hpp"
 #include "modeling/fitting/end_growth.hpp"
 #include "modeling/fitting/surface_fitting.hpp"
 #include "modeling/fitting/vote_voxels.hpp"
@@ -20,9 +20,6 @@
 
 namespace tubebin::modeling {
 namespace {
-
-/// A scanner a metre above the origin that looks down.
-ViewProjection view_from_above() { return {make_pose(Quat(0, 1, 0, 0), {0, 0, 1}), cloud::Point::Zero()}; }
 
 /// The upper side of a tube of kRadius along x, and its normals.
 struct HalfTube {

@@ -3,33 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-#include <numeric>
-
-#include "modeling/built_scene.hpp"
+#include "modeling/built_surface.hpp"
 #include "tubebin/modeling/greedy_joining.hpp"
 
 namespace tubebin::modeling {
 namespace {
-
-/// The upper half of a tube's surface, sampled every 1.5 mm, without the joints' spheres.
-FilteredCloud upper_half_of(const std::vector<Vec3>& nodes) {
-  constexpr double kSpacing = 0.0015;
-  FilteredCloud cloud{.source = {}, .points = {}, .normals = {}, .spacing = kSpacing};
-  for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
-    const Vec3 axis = (nodes[k + 1] - nodes[k]).normalized();
-    const Vec3 side = axis.cross(Vec3::UnitZ()).normalized(), up = side.cross(axis);
-    for (double along = 0.0; along < (nodes[k + 1] - nodes[k]).norm(); along += kSpacing)
-      for (double angle = 0.0; angle < std::numbers::pi; angle += kSpacing / kRadius) {
-        const Vec3 normal = std::cos(angle) * side + std::sin(angle) * up;
-        cloud.points.push_back((nodes[k] + along * axis + kRadius * normal).cast<float>());
-        cloud.normals.push_back(normal.cast<float>());
-      }
-  }
-  cloud.source.resize(cloud.points.size());
-  std::iota(cloud.source.begin(), cloud.source.end(), 0U);
-  return cloud;
-}
 
 /// A cylinder across the bends of several would have points of each of them.
 TEST(RegionGrowing, ShortCylindersInABendAreFoundOneByOne) {

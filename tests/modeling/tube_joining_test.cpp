@@ -5,35 +5,13 @@
 #include <algorithm>
 #include <limits>
 
-#include "modeling/built_scene.hpp"
-#include "modeling/joining/occlusion.hpp"
+#include "modeling/lid_scene.hpp"
 
 namespace tubebin::modeling {
 namespace {
 
-constexpr double kSheetSpacing = 0.004;  // metres, of a built cloud's points
-
-/// A level sheet of points about `center`.
-void add_sheet(const Vec3& center, double half_size, std::vector<cloud::Point>& points) {
-  for (double x = -half_size; x <= half_size; x += kSheetSpacing)
-    for (double y = -half_size; y <= half_size; y += kSheetSpacing)
-      points.push_back((center + Vec3(x, y, 0)).cast<float>());
-}
-
-/// What a scanner 2 m above sees of a floor far below, and of a lid over the middle of the x axis.
-class TubeJoining : public ::testing::Test {
+class TubeJoining : public LidScene {
  protected:
-  TubeJoining() {
-    add_sheet({0, 0, -0.3}, 0.6, points_);
-    add_sheet({0, 0, 0.1}, 0.03, points_);
-  }
-
-  OcclusionTest occlusion() const {
-    const Pose world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 2});
-    const ModelingInput input{.points = points_, .world_from_sensor = world_from_sensor, .bin = std::nullopt};
-    return {input, {world_from_sensor, cloud::Point::Zero()}, kSheetSpacing, kRadius};
-  }
-
   std::vector<double> joined_lengths(const std::vector<TubePiece>& pieces) const {
     std::vector<double> lengths;
     for (const TubePath& path : join_pieces(pieces, occlusion(), 0.0).paths)
@@ -48,13 +26,6 @@ class TubeJoining : public ::testing::Test {
       if (join.end_a == 1 && join.end_b == 2) return join.cost;
     return 100.0;
   }
-
-  static TubePiece straight(double y, double x_from, double x_to) {
-    return {.nodes = {{x_from, y, 0}, {(x_from + x_to) / 2, y, 0}, {x_to, y, 0}}, .radius = kRadius, .points = {}};
-  }
-
- private:
-  std::vector<cloud::Point> points_;
 };
 
 TEST_F(TubeJoining, BitsOfSurfaceTellNoCommonLength) {

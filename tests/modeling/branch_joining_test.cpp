@@ -1,0 +1,51 @@
+#include "modeling/joining/branch_joining.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "modeling/lid_scene.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+class BranchJoining : public LidScene {
+ protected:
+  static TubePath path(std::vector<Vec3> nodes) {
+    std::vector<bool> bridged(nodes.size() - 1, false);
+    return {.nodes = std::move(nodes), .bridged = std::move(bridged)};
+  }
+  /// Along x, with a branch from `start` toward +y: its fitted end lies within the trunk.
+  static std::vector<TubePath> tree(double y, double start) {
+    return {path({{-0.15, y, 0}, {0.15, y, 0}}), path({{0.0, y + start, 0}, {0.0, y + 0.1, 0}})};
+  }
+};
+
+TEST_F(BranchJoining, ABranchThatStartsOnASideIsLedUpToIt) {
+  const auto tubes = join_branches(tree(0.3, 0.5 * kRadius), kRadius, occlusion(), 0.0);
+  ASSERT_EQ(tubes.size(), 1u);
+  ASSERT_EQ(tubes[0].paths.size(), 2u);
+  EXPECT_NEAR(polyline_length(tubes[0].paths[0].nodes), 0.3, 1e-9);  // longest first
+  EXPECT_LT((tubes[0].paths[1].nodes.front() - Vec3(0, 0.3, 0)).norm(), 0.2 * kRadius);
+  EXPECT_EQ(tubes[0].paths[1].bridged, (std::vector<bool>{true, false}));
+  EXPECT_NEAR(tubes[0].length(), 0.4, 0.2 * kRadius);
+}
+
+TEST_F(BranchJoining, ATubeThatEndsBesideAnotherIsNoBranchOfIt) {
+  EXPECT_EQ(join_branches(tree(0.3, 2.1 * kRadius), kRadius, occlusion(), 0.0).size(), 2u);  // the gap is in sight
+  EXPECT_TRUE(join_branches({}, kRadius, occlusion(), 0.0).empty());
+}
+
+/// Under the lid a branch's start is out of sight, and so is whether it is one.
+TEST_F(BranchJoining, AKnownLengthDecidesWhatTheLidHides) {
+  const auto tubes_of_length = [&](double length) {
+    return join_branches(tree(0.0, 0.045), kRadius, occlusion(), length);
+  };
+  EXPECT_EQ(tubes_of_length(0.0).size(), 2u);  // not known
+  EXPECT_EQ(tubes_of_length(0.3).size(), 2u);
+  ASSERT_EQ(tubes_of_length(0.4).size(), 1u);
+  EXPECT_NEAR(tubes_of_length(0.4)[0].length(), 0.4, kRadius);
+}
+
+}  // namespace
+}  // namespace tubebin::modeling

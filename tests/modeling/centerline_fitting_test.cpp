@@ -1,0 +1,58 @@
+#include "modeling/fitting/centerline_fitting.hpp"
+
+#include <gtest/gtest.h>
+
+#include "modeling/built_surface.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+const Vec3 kAbove(0, 0, 1);  // metres, the viewpoint
+
+std::optional<TubePiece> fit_all(const FilteredCloud& cloud, double radius) {
+  return fit_centerline(cloud, {cloud.source, VoteGraph(cloud, cloud.source, radius)}, {}, radius, kAbove);
+}
+
+TEST(CenterlineFitting, FindsTheCylindersThatPointsLieOn) {
+  const std::vector<std::vector<Vec3>> tubes = {
+      {{-0.1, 0, 0}, {0.1, 0.03, 0.02}},
+      {{-0.1, 0, 0}, {0, 0, 0}, {0.08, 0.05, 0.01}},
+      {{-0.2, 0, 0}, {-0.1, 0.02, 0}, {0, 0, 0}, {0.06, 0.08, 0}, {0.04, 0.18, 0}}};
+  for (const std::vector<Vec3>& nodes : tubes)
+    for (const double noise : {0.0, 0.0003}) {
+      FilteredCloud cloud = upper_half_of(nodes);
+      Random random(8);
+      for (std::size_t i = 0; i < cloud.points.size(); ++i)
+        cloud.points[i] += static_cast<float>(noise * random.normal()) * cloud.normals[i];
+      const std::optional<TubePiece> piece = fit_all(cloud, kRadius);
+      ASSERT_TRUE(piece.has_value());
+      EXPECT_GE(piece->nodes.size(), nodes.size());
+      EXPECT_LE(piece->nodes.size(), nodes.size() + 1);
+      EXPECT_LT(distance_between(piece->nodes, nodes), noise == 0.0 ? 0.1 * kRadius : 0.2 * kRadius);
+      EXPECT_EQ(piece->points, cloud.source);
+    }
+}
+
+TEST(CenterlineFitting, GivesAStretchShorterThanItIsWideTheAxisOfItsNormals) {
+  const std::vector<Vec3> nodes = {{0, 0, 0}, {0.012, 0.009, 0}};
+  const std::optional<TubePiece> piece = fit_all(upper_half_of(nodes), kRadius);
+  ASSERT_TRUE(piece.has_value());
+  const Vec3 axis = (piece->nodes.back() - piece->nodes.front()).normalized();
+  EXPECT_GT(std::abs(axis.dot((nodes[1] - nodes[0]).normalized())), std::cos(radians(5.0)));
+  EXPECT_LT(distance_between(piece->nodes, nodes), 0.3 * kRadius);
+}
+
+TEST(CenterlineFitting, MakesNothingOfPointsThatLieOnNoTube) {
+  Random random(9);
+  FilteredCloud cloud{.source = {}, .points = {}, .normals = {}, .spacing = 0.0015};
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    const Vec3 anywhere(random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03));
+    cloud.source.push_back(i);
+    cloud.points.push_back(anywhere.cast<float>());
+    cloud.normals.push_back(Vec3(random.normal(), random.normal(), random.normal()).normalized().cast<float>());
+  }
+  EXPECT_FALSE(fit_all(cloud, kRadius).has_value());
+}
+
+}  // namespace
+}  // namespace tubebin::modeling

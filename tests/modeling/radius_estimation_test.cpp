@@ -1,0 +1,66 @@
+#include "modeling/input/radius_estimation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "modeling/built_surface.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+TEST(RadiusEstimation, PlacesOnATubeCurveAsItDoes) {
+  for (const double radius : {0.004, 0.0125, 0.03}) {
+    const FilteredCloud cloud = upper_half_of({{-0.1, 0, 0}, {0.1, 0, 0}}, radius);
+    CurvedPlaces places = find_curved_places(cloud.points, cloud.normals, view_from_above(), cloud.spacing);
+    ASSERT_GT(places.radii.size(), 0.9 * static_cast<double>(places.looked_at));
+    std::ranges::sort(places.radii);
+    EXPECT_NEAR(places.radii.front(), radius, 0.15 * radius);  // chords are shorter than arcs
+    EXPECT_NEAR(places.radii[places.radii.size() / 2], radius, 0.05 * radius);
+    EXPECT_NEAR(places.radii.back(), radius, 0.15 * radius);
+  }
+}
+
+TEST(RadiusEstimation, WhatIsFlatOrCurvesBothWaysHasNoRadius) {
+  FilteredCloud ball{.source = {}, .points = {}, .normals = {}, .spacing = 0.001}, plane = ball;
+  for (double x = -0.02; x <= 0.02; x += ball.spacing)
+    for (double y = -0.02; y <= 0.02; y += ball.spacing) {
+      const Vec3 normal = Vec3(x, y, 0.03).normalized();
+      ball.points.push_back((0.03 * normal).cast<float>());
+      ball.normals.push_back(normal.cast<float>());
+      plane.points.push_back(Vec3(x, y, 0).cast<float>());
+      plane.normals.push_back(cloud::Point::UnitZ());
+    }
+  for (const FilteredCloud& cloud : {ball, plane}) {
+    const CurvedPlaces places = find_curved_places(cloud.points, cloud.normals, view_from_above(), cloud.spacing);
+    EXPECT_GT(places.looked_at, 300u);
+    EXPECT_TRUE(places.radii.empty());
+  }
+}
+
+TEST(RadiusEstimation, TheCommonestRadiusIsTheOneThatMostPlacesShow) {
+  const std::vector<double> radii = {0.010, 0.3, 0.011, 0.0102, 0.0098, 0.02, 0.021, 0.0205, 0.05};
+  EXPECT_DOUBLE_EQ(commonest_radius(radii, {}).radius, 0.0102);
+  EXPECT_EQ(commonest_radius(radii, {}).places, 4u);
+  EXPECT_DOUBLE_EQ(commonest_radius(radii, {0.0105}).radius, 0.0205);
+  EXPECT_EQ(commonest_radius({}, {}).places, 0u);
+}
+
+/// The points of a tube of 13 mm, a bend in it, modeled with 12.5 mm.
+TEST(RadiusEstimation, IsRefinedToThatOfThePointsAboutThePieces) {
+  constexpr double kTrue = 0.013;
+  const std::vector<Vec3> nodes = {{-0.1, 0, 0}, {0, 0, 0}, {0.08, 0.06, 0}};
+  FilteredCloud cloud = upper_half_of(nodes, kTrue);
+  TubePiece piece{.nodes = nodes, .radius = kRadius, .points = cloud.source};
+  for (Vec3& node : piece.nodes) node += Vec3(0.0, 0.0003, -0.0003);  // as a fit of the wrong radius is off
+  EXPECT_NEAR(refine_radius({piece}, cloud.points, kRadius), kTrue, 5e-5);
+  Random random(4);
+  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+    cloud.points[i] += static_cast<float>(0.0003 * random.normal()) * cloud.normals[i];
+  EXPECT_NEAR(refine_radius({piece}, cloud.points, kRadius), kTrue, 0.0001);
+  piece.nodes = {{0, 0, 0}, {0.02, 0, 0}};  // shorter than it is wide
+  EXPECT_EQ(refine_radius({piece}, cloud.points, kRadius), kRadius);
+}
+
+}  // namespace
+}  // namespace tubebin::modeling
