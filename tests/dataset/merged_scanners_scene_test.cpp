@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "support/commands.hpp"
 #include "support/program.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/scene/scene_json.hpp"
@@ -50,11 +51,7 @@ TEST_F(MergedScanners, AreVerifiedModelledAndEvaluated) {
             static_cast<std::ptrdiff_t>(cloud.size()));
   EXPECT_GT(std::ranges::count(cloud.sources, 1U), 1000);
 
-  const std::string validate = "python3 " TUBEBIN_SOURCE_DIR "/tests/validate_json.py " TUBEBIN_SOURCE_DIR
-                               "/docs/scene.schema.json " +
-                               scene + "/scene.json";
-  const int status = std::system(validate.c_str());
-  EXPECT_TRUE(status == 0 || WEXITSTATUS(status) == 77);
+  expect_schema("scene.schema.json", scene + "/scene.json");
 
   const ProgramResult modelled = Program({program_path("model_tubes"), folder_ / "data", "--output",
                                           folder_ / "results", "--keep-clouds", "--quiet"})

@@ -1,6 +1,9 @@
 /// Runs Python where a test compares with it; tests skip where it, or a module that it needs, is missing.
 #pragma once
 
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -30,6 +33,15 @@ inline CommandResult run_command(const std::string& command) {
   const int status = pclose(pipe);
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return result;
+}
+
+/// Whether a file is as a schema in docs/ says. Where that can't be checked the test is skipped, whatever else it checks.
+inline void expect_schema(const std::string& schema, const std::string& path) {
+  const auto python = find_python("jsonschema");
+  if (!python) GTEST_SKIP() << "no python3 with jsonschema here (Debian: python3-jsonschema)";
+  const CommandResult checked = run_command(
+      *python + " " TUBEBIN_SOURCE_DIR "/tests/validate_json.py " TUBEBIN_SOURCE_DIR "/docs/" + schema + " " + path);
+  EXPECT_EQ(checked.exit_code, 0) << checked.output;
 }
 
 }  // namespace tubebin::testing
