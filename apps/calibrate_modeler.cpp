@@ -117,8 +117,12 @@ int run(Arguments& arguments) {
   if (report.failed_runs > 0)
     fmt::print(stderr, "{} models crashed or took too long and count as 0; {}.trials/runs.jsonl names them\n",
                report.failed_runs, options.output);
-  if (report.held_back.mean_gain() < 0.0)
-    fmt::print(stderr, "On the scenes that were held back the tuned parameters are worse: more scenes would help.\n");
+  if (!report.is_recommended())
+    fmt::print(
+        stderr,
+        "Warning: on the scenes that were held back the tuned parameters are worse by {:.4f} +- {:.4f}. {} is not "
+        "recommended: keep the configuration that you began with, or tune on more scenes.\n",
+        -report.held_back.mean_gain(), report.held_back.gain_error(), options.output);
   return static_cast<int>(ExitCode::done);
 }
 

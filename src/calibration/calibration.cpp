@@ -91,6 +91,8 @@ std::string describe_origin(const CalibrationReport& report, const CalibrationOp
   for (std::size_t p = 0; p < report.parameters.size(); ++p)
     text += fmt::format("#   {} {} -> {} (from {} to {})\n", report.parameters[p].key, report.before[p],
                         report.after[p], report.parameters[p].range.low, report.parameters[p].range.high);
+  if (!report.is_recommended())
+    text += "# Not recommended: worse on the scenes that were held back than the configuration it began with.\n";
   return text + "\n";
 }
 

@@ -48,6 +48,7 @@ void ScenePacker::give_up(std::size_t position) {
 
 void ScenePacker::finish(bool is_last) {
   flush();
+  folder_.store().remove_empty_sets(scenes_);
   if (!is_last || (end_ == 0 && file_.get() < 0)) return;
   write("");  // opens the tar that was complete already
   const std::string end = format_tar_end();

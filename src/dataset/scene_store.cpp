@@ -1,5 +1,8 @@
 #include "tubebin/dataset/scene_store.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -73,6 +76,15 @@ bool SceneStore::has(const ManifestRecord& record) const {
 
 void SceneStore::remove(const ConfinedPath& scene_name) const {
   if (const FolderEntry entry = folder_.find_entry(scene_name); entry.folder.get() >= 0) remove_entry(entry);
+}
+
+void SceneStore::remove_empty_sets(const std::vector<SceneId>& scenes) const {
+  std::set<ConfinedPath> sets;
+  for (const SceneId& id : scenes) sets.insert(ConfinedPath(id.name()).parent());
+  for (const ConfinedPath& set : sets) {
+    const FolderEntry entry = folder_.find_entry(set);
+    ::unlinkat(entry.folder.get(), entry.name.c_str(), AT_REMOVEDIR);  // does nothing where something is in it
+  }
 }
 
 void SceneStore::remove_unfinished(const std::vector<SceneId>& scenes, Unfinished which) const {

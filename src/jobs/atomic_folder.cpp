@@ -39,9 +39,7 @@ void remove_at_once(const FolderEntry& entry) {
 class UnfinishedFolder {
  public:
   UnfinishedFolder(const OutputFolder& output, const ConfinedPath& name)
-      : final_(output.make_entry(name)),
-        unfinished_(unfinished_sibling(final_)),
-        content_(output.place(name), make_folder()) {}
+      : content_(output.place(name), make_folder(output, name)) {}
   ~UnfinishedFolder() try { remove_entry(unfinished_); } catch (const IoError&) {  // who clears next tries again
   }
   UnfinishedFolder(const UnfinishedFolder&) = delete;
@@ -66,9 +64,15 @@ class UnfinishedFolder {
   }
 
  private:
-  FileDescriptor make_folder() const {
-    remove_entry(unfinished_);  // of an earlier process of the same id
-    if (::mkdirat(unfinished_.folder.get(), unfinished_.name.c_str(), 0777) != 0) fail_at(final_, kWriting, errno);
+  FileDescriptor make_folder(const OutputFolder& output, const ConfinedPath& name) {
+    while (true) {
+      final_ = output.make_entry(name);
+      unfinished_ = unfinished_sibling(final_);
+      remove_entry(unfinished_);  // of an earlier process of the same id
+      if (::mkdirat(unfinished_.folder.get(), unfinished_.name.c_str(), 0777) == 0) break;
+      // Another run, which packed all that was in the folder around it, may have removed that meanwhile.
+      if (errno != ENOENT || name.parent().is_folder_itself()) fail_at(final_, kWriting, errno);
+    }
     return open_folder(unfinished_, false);
   }
 

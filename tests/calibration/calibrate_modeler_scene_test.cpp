@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <set>
 
@@ -80,6 +81,42 @@ TEST_F(CalibrateModeler, ModelTubesReadsTheOutputAndEvaluateFindsTheSameRecalls)
     EXPECT_NEAR(sum / static_cast<double>(held_back.size()),
                 after ? report.held_back.mean_after() : report.held_back.mean_before(), 1e-9);
   }
+}
+
+// The journal of trials, in which the tuned parameters find nothing on the scenes held back, stands for a search that
+// suits the training scenes alone.
+TEST_F(CalibrateModeler, WhatIsWorseOnTheHeldBackScenesIsNotRecommended) {
+  write_text(file("start.yaml"), "method: region_growing\ngreedy_joining: {gap_max: 0.001}\n");
+  CalibrationOptions options{.dataset = dataset(), .output = file("worse.yaml"), .parameters = {}, .budget = 4.0};
+  const auto calibrate = [&] {
+    return run({program_path("calibrate_modeler"), options.dataset, "--output", options.output, "--config",
+                file("start.yaml"), "--budget", "4", "--quiet"});
+  };
+  const CalibrationReport report =
+      calibrate_modeler(options, results::load_model_config(file("start.yaml")), jobs::Progress::Style::none);
+  ASSERT_TRUE(report.is_recommended());
+  ASSERT_GT(report.held_back.mean_before(), 0.0);
+  ASSERT_NE(report.after, report.before);
+  const ProgramResult better = calibrate();
+  EXPECT_EQ(better.error, "");
+  EXPECT_THAT(read_text(options.output), ::testing::Not(HasSubstr("recommended")));
+
+  const std::string journal = options.output + ".trials/runs.jsonl";
+  std::string text;
+  for (const std::string& line : lines_of(journal)) {
+    nlohmann::ordered_json trial = nlohmann::ordered_json::parse(line);
+    if (trial.contains("scene") &&
+        std::ranges::count(report.held_back_scenes, trial["scene"].get<std::string>()) == 1 &&
+        trial["setting"]["greedy_joining.gap_max"] != 0.001)
+      trial["micro_recall"] = 0.0;
+    text += trial.dump() + "\n";
+  }
+  write_text(journal, text);
+  const ProgramResult worse = calibrate();
+  EXPECT_EQ(worse.exit_code, 0);
+  EXPECT_THAT(worse.error, AllOf(HasSubstr("Warning: on the scenes that were held back the tuned parameters are worse"),
+                                 HasSubstr(options.output + " is not recommended: keep the configuration")));
+  EXPECT_THAT(read_text(options.output), HasSubstr("# Not recommended: worse on the scenes"));
 }
 
 TEST_F(CalibrateModeler, SplitsEveryGroupAlikeAndNoSceneIsOnBothSides) {

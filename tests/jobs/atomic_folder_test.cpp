@@ -50,5 +50,24 @@ TEST(WholeFolder, IsWholeOrNotThereWhileAnotherClears) {
   EXPECT_EQ(std::distance(fs::directory_iterator(data), fs::directory_iterator()), written > 0 ? 1 : 0);
 }
 
+// As where one part of a data set has packed all its scenes while another still makes some.
+TEST(WholeFolder, AppearsThoughAnotherRemovesTheEmptyFolderAroundIt) {
+  const TemporaryFolder folder;
+  const OutputFolder output(folder / "");
+  std::atomic<bool> done = false;
+  std::atomic<int> removed = 0;
+  std::thread remover([&] {
+    while (!done) removed += ::rmdir((folder / "Q1").c_str()) == 0 ? 1 : 0;
+  });
+  for (int round = 0; round < 200; ++round) {
+    EXPECT_NO_THROW(begin_whole_folder(output, "Q1/001", {{"a", "bytes"}})()) << round;
+    EXPECT_EQ(read_text(folder / "Q1/001/a"), "bytes") << round;
+    fs::remove_all(folder / "Q1/001");
+  }
+  done = true;
+  remover.join();
+  EXPECT_GT(removed, 0);
+}
+
 }  // namespace
 }  // namespace tubebin::testing

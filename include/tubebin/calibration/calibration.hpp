@@ -58,6 +58,9 @@ struct CalibrationReport {
   std::size_t failed_runs = 0;  ///< that crashed or took too long, and count as 0
   int signal = 0;  ///< that ended it early, 0 if none did; then nothing but runs_made and runs_before holds
   double seconds = 0.0;
+
+  /// Whether the tuned parameters are at least as good on scenes that they were not tuned on.
+  bool is_recommended() const { return held_back.mean_gain() >= 0.0; }
 };
 
 /// Tunes `start`, and writes the output once all is done. Ended early in any way, the same call goes on where it was.

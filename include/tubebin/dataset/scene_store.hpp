@@ -49,6 +49,9 @@ class SceneStore {
   /// Removes the scene's folder, if it is there. Throws IoError.
   void remove(const ConfinedPath& scene_name) const;
 
+  /// Removes the folders around these scenes in which nothing is.
+  void remove_empty_sets(const std::vector<SceneId>& scenes) const;
+
   /// Removes what killed runs left unfinished: of anything in these scenes' folders and of what stands beside them, or
   /// `only` of these scenes.
   enum class Unfinished { all, only };
