@@ -5,6 +5,7 @@
 #include <map>
 
 #include "modeling/built_scene.hpp"
+#include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin::modeling {
@@ -59,8 +60,7 @@ std::vector<cloud::Label> canonical(std::vector<cloud::Label> labels) {
 struct Expectation {
   const char* name;
   scene::Scene (*build)();
-  double centerline_noise_free;  ///< micro-recall
-  double region_growing;
+  double micro_recall;  ///< of `centerline` without noise
 };
 
 std::ostream& operator<<(std::ostream& out, const Expectation& e) { return out << e.name; }
@@ -72,7 +72,7 @@ TEST_P(BuiltScene, TheCenterlineMethodFindsEachTube) {
   const cloud::Cloud cloud = scan::scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   ASSERT_EQ(result.tubes.size(), scene.tubes.size());
-  EXPECT_GE(micro_recall_of(result, cloud), GetParam().centerline_noise_free);
+  EXPECT_GE(micro_recall_of(result, cloud), GetParam().micro_recall);
   for (const TubeModel& model : result.tubes) {
     double nearest = 1.0;
     for (const scene::PlacedTube& tube : scene.tubes) nearest = std::min(nearest, farthest_node(model, tube));
@@ -86,24 +86,34 @@ TEST_P(BuiltScene, NoiseCostsLittle) {
   add_range_noise(cloud, 0.0003, 5);
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
   EXPECT_EQ(result.tubes.size(), scene.tubes.size());
-  EXPECT_GE(micro_recall_of(result, cloud), GetParam().centerline_noise_free - 0.01);
+  EXPECT_GE(micro_recall_of(result, cloud), GetParam().micro_recall - 0.01);
 }
 
-TEST_P(BuiltScene, RegionGrowingLabelsMostPoints) {
+TEST_P(BuiltScene, RegionGrowingLabelsNearlyAllPoints) {
   const scene::Scene scene = GetParam().build();
   const cloud::Cloud cloud = scan::scan(scene).cloud;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius(ModelingMethod::region_growing));
-  EXPECT_GE(micro_recall_of(result, cloud), GetParam().region_growing);
+  EXPECT_GE(micro_recall_of(result, cloud), 0.99);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, BuiltScene,
-                         ::testing::Values(Expectation{"crossing", crossing, 0.995, 0.55},
-                                           Expectation{"touching_side_by_side", touching_side_by_side, 0.99, 0.55},
-                                           Expectation{"one_over_three", one_over_three, 0.995, 0.55},
-                                           Expectation{"end_on_a_tube", end_on_a_tube, 0.99, 0.55},
-                                           Expectation{"bend_at_the_limit", bend_at_the_limit, 0.995, 0.55},
-                                           Expectation{"in_two_pieces", in_two_pieces, 0.995, 0.55}),
+                         ::testing::Values(Expectation{"crossing", crossing, 0.995},
+                                           Expectation{"touching_side_by_side", touching_side_by_side, 0.99},
+                                           Expectation{"one_over_three", one_over_three, 0.995},
+                                           Expectation{"end_on_a_tube", end_on_a_tube, 0.99},
+                                           Expectation{"bend_at_the_limit", bend_at_the_limit, 0.995},
+                                           Expectation{"in_two_pieces", in_two_pieces, 0.995}),
                          [](const auto& info) { return std::string(info.param.name); });
+
+/// docs/modeling.md: 0.94 for ten tubes of set A, 0.95 of set B, the mean of twenty scenes.
+TEST(Pipeline, RegionGrowingIsAsGoodOnPilesAsTheDocsSay) {
+  for (const std::string scene : {"A10/003", "B10/002"}) {
+    const cloud::Cloud cloud = cloud::read_cloud(TUBEBIN_SOURCE_DIR "/data/" + scene + "/cloud.pcd");
+    const ModelingResult result =
+        model_tubes(input_of(cloud, scene::Bin{}), known_radius(ModelingMethod::region_growing));
+    EXPECT_GE(micro_recall_of(result, cloud), 0.94) << scene;
+  }
+}
 
 TEST(Pipeline, BridgesWhatAnotherTubeHides) {
   const scene::Scene scene = in_two_pieces();
