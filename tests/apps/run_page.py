@@ -26,7 +26,7 @@ def python_with_numpy():
     for python in (sys.executable, "/usr/bin/python3"):
         if subprocess.run([python, "-c", "import numpy"], stderr=subprocess.DEVNULL).returncode == 0:
             return python
-    print("no python3 with numpy here")
+    print("skipped: no python3 with numpy here")
     sys.exit(77)
 
 

@@ -5,12 +5,13 @@
 set -euo pipefail
 source=$(realpath "$(dirname "$0")/../..")
 build=$(realpath "$1")
-python3 -c 'import auditwheel, mypy, nanobind, pytest, scikit_build_core' || exit 77
+python3 -c 'import auditwheel, mypy, nanobind, pytest, scikit_build_core' ||
+  { echo "skipped: python3 lacks a package (tests/requirements.txt)"; exit 77; }
 work=$(mktemp -d /tmp/tubebin_wheel_XXXXXX)
 trap 'rm -rf "$work"' EXIT
 python3 -m venv "$work/bare"
 "$work/bare/bin/pip" install --quiet --disable-pip-version-check --retries 1 numpy 2> "$work/log" ||
-  { echo "numpy can't be fetched: $(tail -1 "$work/log")"; exit 77; }
+  { echo "skipped: numpy can't be fetched: $(tail -1 "$work/log")"; exit 77; }
 
 export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
 python3 -m pip wheel --disable-pip-version-check --no-build-isolation --no-deps -C build-dir="$build/python-wheel" \
