@@ -26,14 +26,14 @@ Examples:
   generate_dataset config/set_b.yaml --output small --tubes 1,5,10-12 --cases 3 --preview
       three scenes each of 1, 5, 10, 11 and 12 tubes, with pictures
   generate_dataset config/set_a.yaml --output /shared/dataset_a --shard 2/4
-      the second of four parts, which four machines make at once; in a job array of Slurm, AWS Batch or Kubernetes,
+      the second of four shards, which four machines make at once; in a job array of Slurm, AWS Batch or Kubernetes,
       --shard is not needed (docs/scale_out.md)
   generate_dataset config/set_a.yaml --output /shared/dataset_a --shard 2/4 --pack
       the same into one tar, /shared/dataset_a/packs/00002-of-00004.tar, instead of three files a scene
-  generate_dataset --merge dataset_a part_1 part_2 part_3 part_4
-      join the parts that were made into folders of their own; names what is missing and how to make it
+  generate_dataset --merge dataset_a shard_1 shard_2 shard_3 shard_4
+      merge the shards that were made into folders of their own; names what is missing and how to make it
   generate_dataset --merge /shared/dataset_a
-      the same where the parts were made into one folder
+      the same where the shards were made into one folder
   generate_dataset --verify dataset_a
       check every scene of a data set; with --repair, make damaged ones anew
 
@@ -72,13 +72,13 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--seed", arguments.seed, "Seed, instead of the configuration's")->check(whole_number());
   app.add_option("-j,--jobs", arguments.jobs, "Worker processes")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("--shard", arguments.shard,
-                 "Make only part I of N, counted from 1; without it, as the environment of a job array says")
+                 "Make only shard I of N, counted from 1; without it, as the environment of a job array says")
       ->type_name("I/N");
   app.add_option("--shard-count", arguments.shard_count, "N, where a scheduler says I alone (Kubernetes)")
       ->check(CLI::Range(1, 1000000))
       ->envname("TUBEBIN_SHARD_COUNT");
   app.add_flag("--preview", arguments.preview, "Also render pictures of each scene");
-  app.add_flag("--pack", arguments.pack, "Into one tar a part, in WebDataset's layout, instead of a folder a scene");
+  app.add_flag("--pack", arguments.pack, "Into one tar a shard, in WebDataset's layout, instead of a folder a scene");
   app.add_flag_callback(
       "--config-reference",
       [] {
@@ -91,7 +91,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       app.add_option("--verify", arguments.verify, "Check a data set instead of making one")->type_name("DIR");
   app.add_flag("--repair", arguments.repair, "Make damaged scenes anew")->needs(verify);
   auto* merge = app.add_option("--merge", arguments.merge,
-                               "Join parts into the folder OUT, or complete OUT where they were made into it")
+                               "Merge shards into the folder OUT, or complete OUT where they were made into it")
                     ->type_name("OUT DIR...")
                     ->expected(1, -1);
   verify->excludes(config)->excludes(output);
@@ -157,10 +157,10 @@ std::int64_t cost_of(const std::vector<dataset::SceneId>& scenes) {
   return cost;
 }
 
-void print_part(const jobs::ShardChoice& choice, const std::vector<dataset::SceneId>& scenes,
-                const dataset::DatasetConfig& config) {
+void print_shard(const jobs::ShardChoice& choice, const std::vector<dataset::SceneId>& scenes,
+                 const dataset::DatasetConfig& config) {
   const std::vector<dataset::SceneId> all = dataset::list_scenes(config);
-  fmt::print(stderr, "Part {} of {} ({}): {} of {} scenes, {:.1f} % of the work\n", choice.shard.index,
+  fmt::print(stderr, "Shard {} of {} ({}): {} of {} scenes, {:.1f} % of the work\n", choice.shard.index,
              choice.shard.count, choice.source, scenes.size(), all.size(),
              100.0 * static_cast<double>(cost_of(scenes)) / static_cast<double>(cost_of(all)));
 }
@@ -173,10 +173,10 @@ int generate(const Arguments& arguments) {
     dataset::DatasetFolder folder(arguments.output, config);
     return make_scenes(folder, scenes, {}, arguments);
   }
-  if (!arguments.quiet) print_part(choice, scenes, config);
+  if (!arguments.quiet) print_shard(choice, scenes, config);
   dataset::DatasetFolder folder(
       arguments.output, config, choice.shard,
-      arguments.pack ? dataset::DatasetFolder::Part::packed : dataset::DatasetFolder::Part::loose);
+      arguments.pack ? dataset::DatasetFolder::ShardScenes::packed : dataset::DatasetFolder::ShardScenes::loose);
   return make_scenes(folder, scenes, choice.shard, arguments);
 }
 

@@ -30,7 +30,7 @@ Examples:
   model_tubes dataset_a --output results --method region_growing --ratios 0.3
       the paper's method, into the same results
   model_tubes /shared/dataset_a --output /shared/results --shard 2/4
-      the second of four parts, which four machines do at once; in a job array of Slurm, AWS Batch or Kubernetes,
+      the second of four shards, which four machines do at once; in a job array of Slurm, AWS Batch or Kubernetes,
       --shard is not needed (docs/scale_out.md)
 
 Run the same command again after an interruption: complete results are kept.
@@ -105,14 +105,15 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 1000000));
   app.add_option(
          "--shard", arguments.shard,
-         "Do only part I of N of a data set, counted from 1; without it, as the environment of a job array says")
+         "Do only shard I of N of a data set, counted from 1; without it, as the environment of a job array says")
       ->type_name("I/N");
   app.add_option("--shard-count", arguments.shard_count, "N, where a scheduler says I alone (Kubernetes)")
       ->check(CLI::Range(1, 1000000))
       ->envname("TUBEBIN_SHARD_COUNT");
-  app.add_option("--resume", arguments.resume,
-                 "Do the runs that results folders lack, by their own options: one folder, or those of a call's parts, "
-                 "into the first")
+  app.add_option(
+         "--resume", arguments.resume,
+         "Do the runs that results folders lack, by their own options: one folder, or those of a call's shards, "
+         "into the first")
       ->type_name("RESULTS...")
       ->excludes(input)
       ->excludes(output);
@@ -214,13 +215,13 @@ results::BatchOptions batch_options(const Arguments& arguments, const results::M
   return options;
 }
 
-void choose_part(results::BatchOptions& options, const Arguments& arguments) {
+void choose_shard_of_clouds(results::BatchOptions& options, const Arguments& arguments) {
   const jobs::ShardChoice choice = jobs::choose_shard(arguments.shard, arguments.shard_count, std::getenv);
   if (!choice.is_sharded()) return;
   options.shard = choice.shard;
   if (arguments.quiet) return;
-  options.on_dealt = [choice](std::size_t own, std::size_t all, double share) {
-    fmt::print(stderr, "Part {} of {} ({}): {} of {} clouds, {:.1f} % of the work\n", choice.shard.index,
+  options.on_shard = [choice](std::size_t own, std::size_t all, double share) {
+    fmt::print(stderr, "Shard {} of {} ({}): {} of {} clouds, {:.1f} % of the work\n", choice.shard.index,
                choice.shard.count, choice.source, own, all, 100.0 * share);
   };
 }
@@ -228,7 +229,7 @@ void choose_part(results::BatchOptions& options, const Arguments& arguments) {
 int model_many(results::BatchOptions options, const results::ModelConfig& config, const Arguments& arguments) {
   options.jobs = arguments.jobs;
   options.keep_clouds = arguments.keep_clouds;
-  choose_part(options, arguments);
+  choose_shard_of_clouds(options, arguments);
   const results::BatchReport report = results::model_dataset(
       options, config, arguments.quiet ? jobs::Progress::Style::none : jobs::Progress::Style::automatic);
   for (const std::string& failed : report.failed) fmt::print(stderr, "{}\n", failed);

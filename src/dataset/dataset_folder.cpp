@@ -30,12 +30,12 @@ void refuse_if_foreign(const std::string& folder) {
     return !entry.path().filename().string().starts_with('.');
   };
   if (std::none_of(fs::directory_iterator(folder), {}, is_foreign)) return;
-  if (fs::exists(config_path(folder))) return;  // another part of the same call was quicker
+  if (fs::exists(config_path(folder))) return;  // another shard of the same call was quicker
   throw_config_error("{}: holds files, but no data set (config.yaml is missing); choose a new or empty folder", folder);
 }
 
 /// Writes config.yaml where it is missing or gains scenes, and returns what it says.
-DatasetConfig settle_config(const OutputFolder& folder, const DatasetConfig& wanted) {
+DatasetConfig create_or_extend_config(const OutputFolder& folder, const DatasetConfig& wanted) {
   const std::string path = config_path(folder.path());
   if (!fs::exists(path)) {
     refuse_if_foreign(folder.path());
@@ -43,10 +43,10 @@ DatasetConfig settle_config(const OutputFolder& folder, const DatasetConfig& wan
   }
   const DatasetConfig there = read_dataset_config(folder.path());
   refuse_if_made_otherwise(folder.path(), there, wanted);
-  DatasetConfig settled = unite(there, wanted);
-  if (format_config(settled) != format_config(there))
-    write_atomically(folder.make_entry(kConfigFile), format_config(settled));
-  return settled;
+  DatasetConfig extended = unite(there, wanted);
+  if (format_config(extended) != format_config(there))
+    write_atomically(folder.make_entry(kConfigFile), format_config(extended));
+  return extended;
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ void require_own_version(const DatasetConfig& config, const std::string& folder)
 DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& config)
     : folder_(folder),
       lock_(folder_),
-      config_(settle_config(folder_, config)),
+      config_(create_or_extend_config(folder_, config)),
       store_(folder_, config_.output),
       manifest_(folder_) {
   remove_unfinished();
@@ -75,26 +75,27 @@ DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& con
 }
 
 DatasetFolder::DatasetFolder(const std::string& folder, const DatasetConfig& config, const jobs::Shard& shard,
-                             Part part)
+                             ShardScenes scenes)
     : folder_(folder),
-      part_(list_scenes(config, shard)),
-      lock_(folder_, jobs::FolderLock::Kind::part),
-      config_(settle_config(folder_, config)),
+      shard_scenes_(list_scenes(config, shard)),
+      lock_(folder_, jobs::FolderLock::Kind::shard),
+      config_(create_or_extend_config(folder_, config)),
       store_(folder_, config_.output),
-      pack_lock_(part == Part::packed ? std::make_unique<jobs::FolderLock>(folder_.make_inner(kPartsFolder), shard)
-                                      : nullptr),
-      manifest_(folder_, shard, *part_) {
+      pack_lock_(scenes == ShardScenes::packed
+                     ? std::make_unique<jobs::FolderLock>(folder_.make_inner(kShardsFolder), shard)
+                     : nullptr),
+      manifest_(folder_, shard, *shard_scenes_) {
   remove_unfinished();
 }
 
 void DatasetFolder::remove_unfinished() const {
-  if (part_) store_.remove_unfinished(*part_, SceneStore::Unfinished::only);
+  if (shard_scenes_) store_.remove_unfinished(*shard_scenes_, SceneStore::Unfinished::only);
   else store_.remove_unfinished(list_scenes(config_), SceneStore::Unfinished::all);
 }
 
 DatasetFolder::~DatasetFolder() try {
-  // Of a part, the next run does it: another host may have been given this one's work.
-  if (!part_) remove_unfinished();
+  // For a shard the next run does it: another host may have been given this one's work.
+  if (!shard_scenes_) remove_unfinished();
 } catch (const IoError&) {  // the next run tries again
 }
 

@@ -36,19 +36,19 @@ std::string id_of(const std::string& line) {
   return line.substr(start.size(), line.find('"', start.size()) - start.size());
 }
 
-std::vector<std::string> list_parts(const std::string& folder) {
-  std::vector<std::string> parts;
+std::vector<std::string> list_shard_files(const std::string& folder) {
+  std::vector<std::string> files;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder + "/" + kPartsFolder, error))
-    if (entry.path().extension() == ".jsonl") parts.push_back(entry.path().string());
-  std::sort(parts.begin(), parts.end());
-  return parts;
+  for (const auto& entry : std::filesystem::directory_iterator(folder + "/" + kShardsFolder, error))
+    if (entry.path().extension() == ".jsonl") files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 /// A new file that no other process writes to, whatever its host.
-ConfinedPath make_part(const OutputFolder& folder, const std::string& part) {
+ConfinedPath make_shard_file(const OutputFolder& folder, const std::string& shard) {
   for (int number = 0;; ++number) {
-    ConfinedPath name = ConfinedPath(kPartsFolder) / fmt::format("{}.{}-{}.jsonl", part, process_name(), number);
+    ConfinedPath name = ConfinedPath(kShardsFolder) / fmt::format("{}.{}-{}.jsonl", shard, process_name(), number);
     if (create_atomically(folder.make_entry(name), "")) return name;
   }
 }
@@ -96,7 +96,7 @@ Manifest::Manifest(const std::string& folder) { read_all(folder, nullptr); }
 Manifest::Manifest(const OutputFolder& folder) : output_(folder) { read_all(folder.path(), nullptr); }
 
 Manifest::Manifest(const OutputFolder& folder, const jobs::Shard& shard, const std::vector<SceneId>& scenes)
-    : output_(folder), part_name_(shard.name()) {
+    : output_(folder), shard_name_(shard.name()) {
   std::set<std::string> wanted;
   for (const SceneId& id : scenes) wanted.insert(id.name());
   read_all(folder.path(), &wanted);
@@ -106,7 +106,7 @@ Manifest::Manifest(const OutputFolder& folder, const jobs::Shard& shard, const s
 
 void Manifest::read_all(const std::string& folder, const std::set<std::string>* wanted) {
   complete_bytes_ = read(folder + "/" + kFile, wanted);
-  for (const std::string& part : list_parts(folder)) read(part, wanted);
+  for (const std::string& file : list_shard_files(folder)) read(file, wanted);
 }
 
 std::size_t Manifest::read(const std::string& path, const std::set<std::string>* wanted) {
@@ -136,7 +136,7 @@ const ManifestRecord* Manifest::find(const std::string& id) const {
 }
 
 void Manifest::append(const ManifestRecord& record) {
-  if (file_.is_folder_itself()) file_ = make_part(output_.value(), part_name_);
+  if (file_.is_folder_itself()) file_ = make_shard_file(output_.value(), shard_name_);
   complete_bytes_ = jobs::append_line(output_.value(), file_, complete_bytes_, format_manifest_record(record));
   records_[record.id] = record;
 }
@@ -163,7 +163,7 @@ void Manifest::rewrite(const std::vector<SceneId>& scenes) {
 void Manifest::replace_all(const std::string& text) {
   file_ = kFile;
   write_atomically(output_.value().make_entry(file_), text);
-  if (const FolderEntry parts = output_->find_entry(kPartsFolder); parts.folder.get() >= 0) remove_entry(parts);
+  if (const FolderEntry shards = output_->find_entry(kShardsFolder); shards.folder.get() >= 0) remove_entry(shards);
   complete_bytes_ = text.size();
   damaged_lines_.clear();
 }

@@ -58,9 +58,9 @@ class Merge {
       : output_(output), scenes_(list_scenes(output.config())) {
     const std::string& folder = output.store().folder().path();
     sources_.push_back({folder, &output.manifest(), scene::DatasetFiles(folder)});
-    for (const std::string& part : folders) {
-      manifests_.push_back(std::make_unique<Manifest>(part));
-      sources_.push_back({part, manifests_.back().get(), scene::DatasetFiles(part)});
+    for (const std::string& folder : folders) {
+      manifests_.push_back(std::make_unique<Manifest>(folder));
+      sources_.push_back({folder, manifests_.back().get(), scene::DatasetFiles(folder)});
     }
   }
 
@@ -148,7 +148,7 @@ class Merge {
     output_.manifest().append(record);
   }
 
-  /// Packs keep their names; parts of one call have different ones.
+  /// Packs keep their names; shards of one call have different ones.
   void take_pack(std::size_t source, const ConfinedPath& pack) {
     const auto [owner, is_new] = pack_owner_.try_emplace(pack, source);
     const auto refuse = [&](std::size_t other) {
@@ -173,7 +173,7 @@ class Merge {
     const std::string& folder = output_.store().folder().path();
     const bool is_joined = sources_.size() > 1;
     if (is_joined && !damaged_.empty()) output_.manifest().rewrite_without({damaged_.begin(), damaged_.end()});
-    // Parts may still be at work in a folder that isn't complete.
+    // Shards may still be at work in a folder that isn't complete.
     if (is_joined || report_.complete == report_.scenes) output_.manifest().rewrite(scenes_);
     if (!damaged_.empty() && !is_joined)
       report_.commands.push_back(fmt::format("generate_dataset --verify {} --repair", shell_path(folder)));

@@ -18,7 +18,7 @@ std::vector<SceneId> list_scenes(const DatasetConfig& config, jobs::Shard shard)
   costs.reserve(all.size());
   for (const SceneId& id : all) costs.push_back(jobs::generation_cost(id.tubes));
   std::vector<SceneId> own;
-  for (const std::size_t i : deal(costs, shard)) own.push_back(std::move(all[i]));
+  for (const std::size_t i : items_of_shard(costs, shard)) own.push_back(std::move(all[i]));
   return own;
 }
 

@@ -96,7 +96,7 @@ void SceneStore::remove_unfinished(const std::vector<SceneId>& scenes, Unfinishe
   for (const auto& [parent, own] : names)
     jobs::remove_unfinished(folder_, parent, which == Unfinished::only ? own : std::set<std::string>{});
   if (which == Unfinished::only) return;
-  for (const ConfinedPath& beside : {ConfinedPath(), ConfinedPath("packs"), ConfinedPath(kPartsFolder)})
+  for (const ConfinedPath& beside : {ConfinedPath(), ConfinedPath("packs"), ConfinedPath(kShardsFolder)})
     jobs::remove_unfinished(folder_, beside);
 }
 

@@ -94,32 +94,32 @@ void find_detected(const Contingency& c, HooverClasses& classes) {
 void find_over_segmented(const Contingency& c, HooverClasses& classes) {
   for (std::size_t row = 0; row < classes.rows.size(); ++row) {
     if (classes.rows[row] != HooverClass::missed) continue;
-    std::vector<std::size_t> pieces;
+    std::vector<std::size_t> columns;
     std::int64_t covered = 0;
     for (std::size_t column = 0; column < columns_of(c); ++column) {
       if (c.count(row, column) == 0 || !agrees(c.count(row, column), c.predicted_size(column))) continue;
-      pieces.push_back(column);
+      columns.push_back(column);
       covered += c.count(row, column);
     }
-    if (pieces.size() < 2 || !agrees(covered, c.truth_size(row))) continue;
+    if (columns.size() < 2 || !agrees(covered, c.truth_size(row))) continue;
     classes.rows[row] = HooverClass::over_segmented;
-    for (const std::size_t column : pieces) classes.column_is_used[column] = true;
+    for (const std::size_t column : columns) classes.column_is_used[column] = true;
   }
 }
 
 void find_under_segmented(const Contingency& c, HooverClasses& classes) {
   for (std::size_t column = 0; column < columns_of(c); ++column) {
     if (classes.column_is_used[column]) continue;
-    std::vector<std::size_t> parts;
+    std::vector<std::size_t> rows;
     std::int64_t covered = 0;
     for (std::size_t row = 0; row < classes.rows.size(); ++row) {
       if (classes.rows[row] != HooverClass::missed || !agrees(c.count(row, column), c.truth_size(row))) continue;
-      parts.push_back(row);
+      rows.push_back(row);
       covered += c.count(row, column);
     }
-    if (parts.size() < 2 || !agrees(covered, c.predicted_size(column))) continue;
+    if (rows.size() < 2 || !agrees(covered, c.predicted_size(column))) continue;
     classes.column_is_used[column] = true;
-    for (const std::size_t row : parts) classes.rows[row] = HooverClass::under_segmented;
+    for (const std::size_t row : rows) classes.rows[row] = HooverClass::under_segmented;
   }
 }
 

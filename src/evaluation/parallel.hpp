@@ -1,4 +1,4 @@
-/// Independent pieces of work on several threads.
+/// Independent work on several threads.
 #pragma once
 
 #include "tubebin/evaluation/evaluation.hpp"

@@ -7,7 +7,7 @@
 namespace tubebin::evaluation {
 namespace {
 
-std::uint64_t mix(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
+std::uint64_t combined_hash(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
   std::uint64_t hash = a * 0x9e3779b97f4a7c15ULL;
   hash = (hash ^ (hash >> 29) ^ b) * 0xbf58476d1ce4e5b9ULL;
   hash = (hash ^ (hash >> 32) ^ c) * 0x94d049bb133111ebULL;
@@ -17,7 +17,7 @@ std::uint64_t mix(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
 std::uint64_t position_hash(const cloud::Point& point) {
   // Adding zero turns -0 into 0, which compares equal to it.
   const auto bits = [](float value) { return std::uint64_t{std::bit_cast<std::uint32_t>(value + 0.0F)}; };
-  return mix(bits(point.x()), bits(point.y()), bits(point.z()));
+  return combined_hash(bits(point.x()), bits(point.y()), bits(point.z()));
 }
 
 /// Points chained by hash, each chain in the points' order. A point that is taken leaves its chain, so a
@@ -94,7 +94,7 @@ void match_near(std::span<const cloud::Point> queries, std::span<const cloud::Po
   for (std::size_t i = reference.size(); i-- > 0;) {
     const cloud::Point& p = reference[i];
     if (!taken[i] && cloud::is_finite(p))
-      chains.add(mix(cell(p.x()), cell(p.y()), cell(p.z())), static_cast<std::uint32_t>(i));
+      chains.add(combined_hash(cell(p.x()), cell(p.y()), cell(p.z())), static_cast<std::uint32_t>(i));
   }
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const cloud::Point& query = queries[i];
@@ -105,7 +105,7 @@ void match_near(std::span<const cloud::Point> queries, std::span<const cloud::Po
         const double offset = (corner >> axis) & 1 ? static_cast<double>(tolerance) : -static_cast<double>(tolerance);
         return cell(static_cast<double>(query[axis]) + offset);
       };
-      result[i] = chains.take_first(mix(side(0), side(1), side(2)), is_near);
+      result[i] = chains.take_first(combined_hash(side(0), side(1), side(2)), is_near);
     }
   }
 }

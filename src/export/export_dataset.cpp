@@ -154,7 +154,7 @@ void refuse_if_no_export(const std::string& output) {
 }
 
 /// Writes the index that says what the output is made from, and returns the scenes in its order.
-std::vector<Source> settle_index(const scene::DatasetFiles& dataset, const scene::DatasetHashes& hashes,
+std::vector<Source> update_index(const scene::DatasetFiles& dataset, const scene::DatasetHashes& hashes,
                                  const OutputFolder& output, const std::string& format) {
   const std::string path = output.place(kIndex);
   std::vector<Source> sources = list_sources(dataset, hashes);
@@ -233,7 +233,7 @@ ExportReport export_dataset(const ExportOptions& options, jobs::Progress::Style 
   if (!fs::exists(options.output)) list_sources(dataset, hashes);  // leaves no folder where there is nothing to export
   const OutputFolder output(options.output);
   const jobs::FolderLock lock(output);
-  const std::vector<Source> sources = settle_index(dataset, hashes, output, described(options));
+  const std::vector<Source> sources = update_index(dataset, hashes, output, described(options));
   const std::vector<SceneEntry> entries = number_scenes(sources);
   const std::unique_ptr<ExportFormat> format = formats().at(options.format)(options);
   remove_all_unfinished(output);

@@ -136,15 +136,16 @@ void link_or_copy(const std::string& source, const FolderEntry& entry) {
   copy_file(from, entry);
 }
 
-/// The files of one folder on their way to the disk.
-class FolderOnItsWay {
+/// The files of one folder, written but not yet on the disk until it is committed.
+class FolderTransaction {
  public:
-  FolderOnItsWay(const OutputFolder& output, const ConfinedPath& name, const std::map<std::string, std::string>& files)
+  FolderTransaction(const OutputFolder& output, const ConfinedPath& name,
+                    const std::map<std::string, std::string>& files)
       : folder_(output, name) {
     for (const auto& [file, bytes] : files) files_.emplace_back(folder_.file(file), bytes);
   }
 
-  void arrive() const {
+  void commit() const {
     for (const NewFile& file : files_) file.sync();
     folder_.rename_to_final();
   }
@@ -158,7 +159,7 @@ class FolderOnItsWay {
 
 std::function<void()> begin_whole_folder(const OutputFolder& output, const ConfinedPath& name,
                                          const std::map<std::string, std::string>& files) {
-  return [folder = std::make_shared<FolderOnItsWay>(output, name, files)] { folder->arrive(); };
+  return [folder = std::make_shared<FolderTransaction>(output, name, files)] { folder->commit(); };
 }
 
 std::function<void()> begin_linked_folder(const OutputFolder& output, const ConfinedPath& name,

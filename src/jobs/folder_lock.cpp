@@ -69,7 +69,7 @@ FolderLock::FolderLock(const std::string& folder) {
 FolderLock::FolderLock(const OutputFolder& folder, const Shard& packed_part)
     : file_(open_file(folder.make_entry(packed_part.name() + ".lock"), kLockFile)) {
   if (const auto other = lock_or_tell(file_, Kind::exclusive))
-    throw_io_error("{}: {} is packing part {}, and two can't; wait for its end", folder.path(), *other,
+    throw_io_error("{}: {} is packing shard {}, and two can't; wait for its end", folder.path(), *other,
                    packed_part.name());
 }
 

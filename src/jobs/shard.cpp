@@ -45,7 +45,7 @@ void require_same_count(const std::optional<int>& given, int count, const Variab
                        *given, count, variables.source());
 }
 
-/// Throws where a number of the array is left out, since then nobody can tell which part is whose.
+/// Throws where a number of the array is left out, since then nobody can tell which shard is whose.
 std::optional<ShardChoice> slurm_shard(const Environment& environment, std::optional<int> given_count) {
   Variables variables(environment);
   const std::optional<int> id = variables.read("SLURM_ARRAY_TASK_ID", 0);
@@ -60,7 +60,7 @@ std::optional<ShardChoice> slurm_shard(const Environment& environment, std::opti
   const int offset = *id - min;
   if (offset < 0 || offset % step != 0 || offset / step >= *count || (max && (*max - min) / step + 1 != *count))
     throw_config_error(
-        "the array's numbers are not evenly spaced ({}), so they don't say which part is whose; say --shard I/N",
+        "the array's numbers are not evenly spaced ({}), so they don't say which shard is whose; say --shard I/N",
         variables.source());
   require_same_count(given_count, *count, variables);
   return ShardChoice{{offset / step + 1, *count}, variables.source()};
@@ -79,12 +79,12 @@ std::optional<ShardChoice> indexed_shard(const Environment& environment, std::op
     count = given_count;
     if (!count)
       throw_config_error(
-          "{} says which part this is, but not of how many; say --shard-count N or TUBEBIN_SHARD_COUNT=N",
+          "{} says which shard this is, but not of how many; say --shard-count N or TUBEBIN_SHARD_COUNT=N",
           variables.source());
     variables.add(fmt::format("shard count {}", *count));
   }
   if (*index >= *count)
-    throw_config_error("{}: there are parts 0 to {} only ({})", index_name, *count - 1, variables.source());
+    throw_config_error("{}: there are shards 0 to {} only ({})", index_name, *count - 1, variables.source());
   return ShardChoice{{*index + 1, *count}, variables.source()};
 }
 
@@ -99,7 +99,7 @@ Shard parse_shard(const std::string& text) {
   const bool has_slash = index.ec == std::errc() && index.ptr != end && *index.ptr == '/';
   const auto count = std::from_chars(has_slash ? index.ptr + 1 : end, end, shard.count);
   if (!has_slash || count.ec != std::errc() || count.ptr != end || shard.index < 1 || shard.count < shard.index)
-    throw_config_error("shard: '{}' is not valid; valid: I/N with I from 1 to N, as 1/4 for the first of four parts",
+    throw_config_error("shard: '{}' is not valid; valid: I/N with I from 1 to N, as 1/4 for the first of four shards",
                        text);
   return shard;
 }
@@ -113,20 +113,20 @@ ShardChoice choose_shard(const std::string& option, std::optional<int> count, co
   return {};
 }
 
-std::vector<std::size_t> deal(const std::vector<std::int64_t>& costs, Shard shard) {
+std::vector<std::size_t> items_of_shard(const std::vector<std::int64_t>& costs, Shard shard) {
   std::vector<std::size_t> order(costs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return costs[a] > costs[b]; });
 
-  using Load = std::pair<std::int64_t, int>;  // of the part with this number, the least first
+  using Load = std::pair<std::int64_t, int>;  // of the shard with this index, the least first
   std::priority_queue<Load, std::vector<Load>, std::greater<>> loads;
-  for (int part = 1; part <= shard.count; ++part) loads.emplace(0, part);
+  for (int index = 1; index <= shard.count; ++index) loads.emplace(0, index);
   std::vector<std::size_t> own;
   for (const std::size_t i : order) {
-    const auto [load, part] = loads.top();
+    const auto [load, index] = loads.top();
     loads.pop();
-    loads.emplace(load + costs[i], part);
-    if (part == shard.index) own.push_back(i);
+    loads.emplace(load + costs[i], index);
+    if (index == shard.index) own.push_back(i);
   }
   std::sort(own.begin(), own.end());
   return own;

@@ -175,20 +175,20 @@ std::vector<NearestSurface> nearest_surfaces(std::span<const cloud::Point> point
     // A cube's cylinders are sorted, so those of one surface follow each other.
     std::uint32_t surface = NearestSurface::kNone;
     float least = 0.0f, limit = 0.0f;
-    const auto settle = [&] {
+    const auto keep_if_nearest = [&] {
       if (surface != NearestSurface::kNone && std::abs(least) < std::min(limit, std::abs(nearest[i].distance)))
         nearest[i] = {.surface = surface, .distance = least};
     };
     for (const std::uint32_t c : grid.near(points[i])) {
       const float distance = cylinders[c].signed_distance(points[i]);
       const bool is_next = cylinders[c].surface != surface;
-      if (is_next) settle();
+      if (is_next) keep_if_nearest();
       if (!is_next && distance >= least) continue;
       surface = cylinders[c].surface;
       least = distance;
       limit = cylinders[c].reach_of(points[i], reach);
     }
-    settle();
+    keep_if_nearest();
   }
   return nearest;
 }

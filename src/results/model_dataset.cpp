@@ -150,23 +150,23 @@ ResultsIndex index_of(const BatchOptions& options, const ModelConfig& config, co
 }
 
 /// Those whose runs this call does.
-std::vector<CloudFile> deal_clouds(const std::vector<CloudFile>& all, const BatchOptions& options) {
+std::vector<CloudFile> clouds_of_shard(const std::vector<CloudFile>& all, const BatchOptions& options) {
   if (!options.shard) return all;
   std::vector<std::int64_t> costs;
   for (const CloudFile& cloud : all)
     costs.push_back(jobs::modeling_cost(evaluation::parse_scene_name(cloud.scene).tubes));
   std::vector<CloudFile> own;
   std::int64_t cost = 0;
-  for (const std::size_t i : deal(costs, *options.shard)) {
+  for (const std::size_t i : items_of_shard(costs, *options.shard)) {
     own.push_back(all[i]);
     cost += costs[i];
   }
   const std::int64_t whole = std::accumulate(costs.begin(), costs.end(), std::int64_t{0});
-  options.on_dealt(own.size(), all.size(), static_cast<double>(cost) / static_cast<double>(whole));
+  options.on_shard(own.size(), all.size(), static_cast<double>(cost) / static_cast<double>(whole));
   return own;
 }
 
-/// All parts of a call write the same index, whose scenes are those of the whole call.
+/// All shards of a call write the same index, whose scenes are those of the whole call.
 void write_index(const OutputFolder& results, const ResultsIndex& wanted) {
   const std::string path = results.place(kResultsIndexFile);
   const FolderEntry entry = results.make_entry(kResultsIndexFile);
@@ -224,28 +224,28 @@ class CompleteRuns {
 };
 
 /// Removes what a killed run left of the runs that it was writing; at the end, too, what an interrupted one leaves.
-class NothingUnfinished {
+class UnfinishedCleanup {
  public:
-  NothingUnfinished(const OutputFolder& results, bool is_part, const std::vector<CloudFile>& clouds)
-      : results_(results), is_part_(is_part), clouds_(clouds) {
+  UnfinishedCleanup(const OutputFolder& results, bool is_shard, const std::vector<CloudFile>& clouds)
+      : results_(results), is_shard_(is_shard), clouds_(clouds) {
     remove();
   }
-  ~NothingUnfinished() try {
-    // Of a part, the next call does it: another host may have been given this one's work.
-    if (!is_part_) remove();
+  ~UnfinishedCleanup() try {
+    // For a shard the next call does it: another host may have been given this one's work.
+    if (!is_shard_) remove();
   } catch (const std::exception&) {  // the next call tries again
   }
-  NothingUnfinished(const NothingUnfinished&) = delete;
-  NothingUnfinished& operator=(const NothingUnfinished&) = delete;
+  UnfinishedCleanup(const UnfinishedCleanup&) = delete;
+  UnfinishedCleanup& operator=(const UnfinishedCleanup&) = delete;
 
  private:
   void remove() const {
     for (const CloudFile& cloud : clouds_) jobs::remove_unfinished(results_, cloud.scene);
-    if (!is_part_) jobs::remove_unfinished(results_, {});
+    if (!is_shard_) jobs::remove_unfinished(results_, {});
   }
 
   const OutputFolder& results_;
-  bool is_part_;
+  bool is_shard_;
   const std::vector<CloudFile>& clouds_;
 };
 
@@ -256,13 +256,13 @@ BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config
   const auto start = std::chrono::steady_clock::now();
   const scene::DatasetFiles dataset(options.dataset);
   const auto all_clouds = choose_clouds(dataset, options);
-  const auto clouds = deal_clouds(all_clouds, options);
+  const auto clouds = clouds_of_shard(all_clouds, options);
   const Batch batch{dataset, scene::DatasetHashes(dataset), OutputFolder(options.results)};
   const jobs::FolderLock lock(batch.results,
-                              options.shard ? jobs::FolderLock::Kind::part : jobs::FolderLock::Kind::exclusive);
+                              options.shard ? jobs::FolderLock::Kind::shard : jobs::FolderLock::Kind::exclusive);
   const ResultsIndex index = index_of(options, config, all_clouds);
   write_index(batch.results, index);
-  const NothingUnfinished nothing_unfinished(batch.results, options.shard.has_value(), clouds);
+  const UnfinishedCleanup cleanup(batch.results, options.shard.has_value(), clouds);
 
   const std::vector<ModelingRun> runs = list_runs(options, clouds);
   CompleteRuns complete(options, batch.hashes);

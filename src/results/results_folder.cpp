@@ -30,7 +30,7 @@ ResultsIndex read_index(const std::string& folder) {
   return parse_results_index(read_file(path), path);
 }
 
-/// Of the last call, and of the parts of one.
+/// Of the last call, and of the shards of one.
 std::map<std::string, std::string> read_failures(const std::string& folder) {
   std::map<std::string, std::string> failures;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -230,7 +230,7 @@ FolderRuns read_folder(const NamedFolder& named, const ResultsOptions& options, 
   return read;
 }
 
-/// Folders that are to have the same run are parts of one call, and then they must have been made alike.
+/// Folders that are to have the same run are shards of one call, and then they must have been made alike.
 void require_same_conditions(const std::vector<FolderRuns>& folders) {
   std::map<std::string, const NamedFolder*> asked;
   for (const FolderRuns& folder : folders)
@@ -250,7 +250,7 @@ void require_distinct_runs(const evaluation::Evaluation& evaluation) {
                      evaluation.source, run.key.name());
 }
 
-/// Each part's index asks for all runs of the call; what no folder has is missing, once.
+/// Each shard's index asks for all runs of the call; what no folder has is missing, once.
 void keep_really_missing(evaluation::Evaluation& evaluation) {
   std::set<std::string> known;
   for (const evaluation::RunScore& run : evaluation.runs) known.insert(run.key.name());

@@ -13,7 +13,7 @@ struct IndexedFolder {
   ResultsIndex index;
 };
 
-/// A name a folder; folders of one name are read as parts of one call. `given` are the user's, or none. Without them the
+/// A name a folder; folders of one name are read as shards of one call. `given` are the user's, or none. Without them the
 /// names are empty unless folders are to have the same run under different conditions; then they tell what differs
 /// ("radius: estimated"), or the first folder of the conditions where more than two options differ. Throws ConfigError
 /// where there are not as many names as folders.

@@ -20,7 +20,7 @@ struct Layer {
 /// The bin as far as it can stand before something.
 class BinFront {
  public:
-  struct Part {
+  struct BinBox {
     scene::Box box;
     scene::PixelWindow window;
     double nearest_depth = 0.0;
@@ -28,14 +28,14 @@ class BinFront {
 
   BinFront(const scene::Scene& scene, const scene::Camera& camera);
 
-  const std::vector<Part>& parts() const { return boxes_; }
+  const std::vector<BinBox>& boxes() const { return boxes_; }
   /// The bin's first surface along the pixel's ray, if it may be before `depth`; else infinity.
   double first_before(double depth, int column, int row);
 
  private:
   const scene::Camera& camera_;
   double depth_min_;
-  std::vector<Part> boxes_;
+  std::vector<BinBox> boxes_;
   std::vector<Interval> inside_;
 };
 

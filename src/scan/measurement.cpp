@@ -54,10 +54,10 @@ Measurement::Measurement(const scene::Scene& scene, const RayCaster& caster, con
 }
 
 std::optional<Hit> Measurement::measure(int column, int row) const {
-  const std::optional<Surface> surface = look(column, row);
+  const std::optional<Surface> surface = find_surface(column, row);
   if (!surface || (projector_ && !projector_->reaches(surface->p_in_world)) || !gives_signal(*surface, column, row))
     return std::nullopt;
-  Hit measured = mix(*surface, column, row);
+  Hit measured = mixed_pixel_hit(*surface, column, row);
   measured.depth += range_noise(*surface, measured.depth, column, row) + outlier_offset(column, row);
   if (!(measured.depth > 0.0)) return std::nullopt;
   if (effects_.quantization > 0.0)
@@ -65,7 +65,7 @@ std::optional<Hit> Measurement::measure(int column, int row) const {
   return measured;
 }
 
-std::optional<Measurement::Surface> Measurement::look(int column, int row) const {
+std::optional<Measurement::Surface> Measurement::find_surface(int column, int row) const {
   Surface surface;
   surface.image_position = {column + 0.5, row + 0.5};
   if (effects_.lateral_noise > 0.0)
@@ -107,7 +107,7 @@ double Measurement::reflectivity(cloud::Label label) const {
 }
 
 /// The footprint's corners and middle stand for its area.
-Hit Measurement::mix(const Surface& surface, int column, int row) const {
+Hit Measurement::mixed_pixel_hit(const Surface& surface, int column, int row) const {
   const scene::MixedPixels& mixed = effects_.mixed_pixels;
   if (mixed.share <= 0.0 || noise(NoiseStream::mixed_pixels).uniform(column, row) >= mixed.share) return surface.hit;
   Hit nearest = surface.hit;

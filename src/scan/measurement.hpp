@@ -45,9 +45,9 @@ class Measurement {
     Vec3 to_view;  ///< unit, towards the camera
   };
 
-  std::optional<Surface> look(int column, int row) const;
+  std::optional<Surface> find_surface(int column, int row) const;
   bool gives_signal(const Surface& surface, int column, int row) const;
-  Hit mix(const Surface& surface, int column, int row) const;
+  Hit mixed_pixel_hit(const Surface& surface, int column, int row) const;
   double range_noise(const Surface& surface, double depth, int column, int row) const;
   double outlier_offset(int column, int row) const;
   double reflectivity(cloud::Label label) const;

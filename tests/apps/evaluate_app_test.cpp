@@ -202,7 +202,7 @@ TEST_F(EvaluateApp, TheExampleOfAForeignAlgorithmIsScored) {
   const auto json = nlohmann::json::parse(result.output);
   EXPECT_EQ(json["groups"][0]["method"], "kmeans_labels");
   EXPECT_GT(json["groups"][0]["micro_recall"],
-            0.1);  // ten clusters over three tubes: each tube gets the largest piece
+            0.1);  // ten clusters over three tubes: each tube gets the largest cluster
   EXPECT_LT(json["groups"][0]["micro_recall"], 0.9);
   EXPECT_THAT(json["missing"], ::testing::IsEmpty());
 

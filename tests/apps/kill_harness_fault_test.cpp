@@ -35,7 +35,7 @@ const std::vector<Mode> kModes = {
      }},
     {"merge",
      [](const auto& in, const auto& out) {
-       return "generate_dataset -q --merge " + out + " " + in + "/part1 " + in + "/part2";
+       return "generate_dataset -q --merge " + out + " " + in + "/shard1 " + in + "/shard2";
      }},
     {"merge_packs",
      [](const auto& in, const auto& out) {
@@ -85,7 +85,7 @@ class KillHarness : public ::testing::TestWithParam<Mode> {
                "scanner: {width: 240, height: 150}\n");
     const std::string generate = "generate_dataset " + in() + "/c.yaml -q --output " + in();
     for (const std::string& command :
-         {generate + "/data", generate + "/part1 --shard 1/2", generate + "/part2 --shard 2/2",
+         {generate + "/data", generate + "/shard1 --shard 1/2", generate + "/shard2 --shard 2/2",
           generate + "/pack1 --shard 1/2 --pack", generate + "/pack2 --shard 2/2 --pack",
           "model_tubes " + in() + "/data -q --output " + in() + "/results"})
       ASSERT_EQ(shell(command).wait().exit_code, 0) << command;

@@ -84,9 +84,9 @@ class ReportInBrowser : public ::testing::Test {
     return result.output;
   }
 
-  /// What `script` puts into `result` when it looks at the report in a frame of that width.
-  nlohmann::json look(int width, const std::string& script) const {
-    testing::write_text(folder_.path() / "look.html", fmt::format(R"html(<!DOCTYPE html><body>
+  /// What `script` puts into `result`, evaluated beside the report in a frame of that width.
+  nlohmann::json evaluate_in_frame(int width, const std::string& script) const {
+    testing::write_text(folder_.path() / "frame.html", fmt::format(R"html(<!DOCTYPE html><body>
 <iframe id="frame" src="report.html" style="width:{}px;height:900px;border:0"></iframe><script>
 document.getElementById("frame").addEventListener("load", (event) => {{
   const page = event.target.contentDocument, result = {{}};
@@ -94,8 +94,8 @@ document.getElementById("frame").addEventListener("load", (event) => {{
   document.body.dataset.result = encodeURIComponent(JSON.stringify(result));
 }});
 </script></body>)html",
-                                                                  width, script));
-    const std::string html = dom("look.html");
+                                                                   width, script));
+    const std::string html = dom("frame.html");
     const std::string start = "data-result=\"";
     const std::size_t at = html.find(start);
     if (at == std::string::npos) throw std::runtime_error("the script did not run: " + html);
@@ -126,13 +126,13 @@ TEST_F(ReportInBrowser, FitsAPhoneAndShowsAPictureEarly) {
   const std::string script =
       "result.width = page.documentElement.scrollWidth;"
       "result.picture = page.querySelector('img').getBoundingClientRect().top;";
-  EXPECT_LE(look(390, script)["width"], 390);
-  EXPECT_LT(look(390, script)["picture"], 1500);
-  EXPECT_LT(look(1280, script)["picture"], 1000);
+  EXPECT_LE(evaluate_in_frame(390, script)["width"], 390);
+  EXPECT_LT(evaluate_in_frame(390, script)["picture"], 1500);
+  EXPECT_LT(evaluate_in_frame(1280, script)["picture"], 1000);
 }
 
 TEST_F(ReportInBrowser, SortsAndFiltersScenes) {
-  const nlohmann::json seen = look(1280, R"js(
+  const nlohmann::json seen = evaluate_in_frame(1280, R"js(
   const table = page.querySelector(".scenes table");
   const column = (i) => [...table.tBodies[0].rows].filter((row) => !row.hidden).map((row) => row.cells[i].textContent);
   result.first = column(4);

@@ -68,7 +68,7 @@ class UntrustedDataset : public ::testing::Test {
   }
 
   ProgramResult merge() const {
-    return run_generate_dataset({"--merge", folder_ / "out", folder_ / "in/part", "--quiet", "--jobs", "1"});
+    return run_generate_dataset({"--merge", folder_ / "out", folder_ / "in/shard", "--quiet", "--jobs", "1"});
   }
 
   TemporaryFolder folder_;
@@ -77,12 +77,12 @@ class UntrustedDataset : public ::testing::Test {
 };
 
 TEST_F(UntrustedDataset, FileNamesOfAManifestStayInTheScene) {
-  generate(folder_ / "in/part");
-  const std::string good = read_text(folder_ / "in/part/manifest.jsonl");
+  generate(folder_ / "in/shard");
+  const std::string good = read_text(folder_ / "in/shard/manifest.jsonl");
   for (const std::string& name : {std::string("../../../x.sh"), std::string("../x.sh"), folder_ / "x.sh",
                                   std::string("a/../../../../x.sh"), std::string(".."), std::string("sub/x.sh")}) {
-    // The name leads to bytes that agree with the record, from the part's folder as from the output's.
-    for (const char* at : {"x.sh", "in/part/x.sh"}) write_text(folder_ / at, "payload");
+    // The name leads to bytes that agree with the record, from the shard's folder as from the output's.
+    for (const char* at : {"x.sh", "in/shard/x.sh"}) write_text(folder_ / at, "payload");
     std::string text;
     std::istringstream lines(good);
     for (std::string line; std::getline(lines, line); text += line + '\n') {
@@ -90,7 +90,7 @@ TEST_F(UntrustedDataset, FileNamesOfAManifestStayInTheScene) {
       record["files"][name] = {{"bytes", 7}, {"xxh128", record_bytes("payload").xxh128}};
       line = record.dump();
     }
-    write_text(folder_ / "in/part/manifest.jsonl", text);
+    write_text(folder_ / "in/shard/manifest.jsonl", text);
     fs::remove(folder_ / "x.sh");
     const ProgramResult result = merge();
     expect_refused(result);
@@ -100,14 +100,14 @@ TEST_F(UntrustedDataset, FileNamesOfAManifestStayInTheScene) {
 
 TEST_F(UntrustedDataset, ASetsNameStaysInTheOutput) {
   for (const std::string& set : {std::string("../victim/L"), victim_ + "/L", std::string("a/../../victim/L")}) {
-    generate(folder_ / "in/part");
-    replace(folder_ / "in/part/config.yaml", "set: \"L\"", "set: \"" + set + "\"");
-    replace(folder_ / "in/part/manifest.jsonl", "\"id\":\"L1", "\"id\":\"" + set + "1");
+    generate(folder_ / "in/shard");
+    replace(folder_ / "in/shard/config.yaml", "set: \"L\"", "set: \"" + set + "\"");
+    replace(folder_ / "in/shard/manifest.jsonl", "\"id\":\"L1", "\"id\":\"" + set + "1");
     fs::create_directories(folder_ / "in/victim");
-    fs::copy(folder_ / "in/part/L1", folder_ / "in/victim/L1", fs::copy_options::recursive);
+    fs::copy(folder_ / "in/shard/L1", folder_ / "in/victim/L1", fs::copy_options::recursive);
     expect_refused(merge());
     for (const char* option : {"--verify", "--merge"})
-      expect_refused(run_generate_dataset({option, folder_ / "in/part", "--quiet"}));
+      expect_refused(run_generate_dataset({option, folder_ / "in/shard", "--quiet"}));
     fs::remove_all(folder_ / "in");
     fs::remove_all(folder_ / "out");
   }
@@ -116,10 +116,10 @@ TEST_F(UntrustedDataset, ASetsNameStaysInTheOutput) {
 TEST_F(UntrustedDataset, APacksNameStaysAmongThePacks) {
   for (const std::string& name :
        {std::string("../../victim/file"), victim_ + "/file", std::string("../manifest.jsonl")}) {
-    generate(folder_ / "in/part", {"--pack"});
+    generate(folder_ / "in/shard", {"--pack"});
     fs::create_directories(folder_ / "in/victim");
-    fs::copy_file(folder_ / "in/part/packs/00001-of-00001.tar", folder_ / "in/victim/file");
-    replace(folder_ / "in/part/manifest.jsonl", "\"file\":\"00001-of-00001.tar\"", "\"file\":\"" + name + "\"");
+    fs::copy_file(folder_ / "in/shard/packs/00001-of-00001.tar", folder_ / "in/victim/file");
+    replace(folder_ / "in/shard/manifest.jsonl", "\"file\":\"00001-of-00001.tar\"", "\"file\":\"" + name + "\"");
     expect_refused(merge());
     fs::remove_all(folder_ / "in");
     fs::remove_all(folder_ / "out");
@@ -196,8 +196,8 @@ TEST_F(UntrustedDataset, LinksInResultsAndExportsAreNotFollowed) {
 }
 
 TEST_F(UntrustedDataset, MergingLeavesThePartsPackAsItIs) {
-  generate(folder_ / "in/part", {"--pack"});
-  const std::string pack = folder_ / "in/part/packs/00001-of-00001.tar", bytes = read_text(pack);
+  generate(folder_ / "in/shard", {"--pack"});
+  const std::string pack = folder_ / "in/shard/packs/00001-of-00001.tar", bytes = read_text(pack);
   ASSERT_EQ(merge().exit_code, 0);
   std::vector<std::string> more = {folder_ / "c.yaml", "--output", folder_ / "out", "--pack",
                                    "--cases",          "4",        "--quiet"};
@@ -207,9 +207,9 @@ TEST_F(UntrustedDataset, MergingLeavesThePartsPackAsItIs) {
 }
 
 TEST_F(UntrustedDataset, MergingSaysWhatItCouldNotCheck) {
-  generate(folder_ / "in/part");
-  fs::remove(folder_ / "in/part/L1/002/cloud.pcd");
-  fs::create_directory(folder_ / "in/part/L1/002/cloud.pcd");  // there, and nobody can read it
+  generate(folder_ / "in/shard");
+  fs::remove(folder_ / "in/shard/L1/002/cloud.pcd");
+  fs::create_directory(folder_ / "in/shard/L1/002/cloud.pcd");  // there, and nobody can read it
   const ProgramResult result = merge();
   EXPECT_EQ(result.exit_code, 3) << result.out << result.error;
   EXPECT_THAT(result.out, HasSubstr("L1/002/cloud.pcd: cannot be read"));
@@ -217,10 +217,10 @@ TEST_F(UntrustedDataset, MergingSaysWhatItCouldNotCheck) {
 }
 
 TEST_F(UntrustedDataset, AnotherVersionsDataSetIsNotVouchedFor) {
-  generate(folder_ / "in/part");
-  replace(folder_ / "in/part/config.yaml", "tool_version: \"0.", "tool_version: \"9.");
-  for (const ProgramResult& result : {merge(), run_generate_dataset({"--verify", folder_ / "in/part"}),
-                                      run_generate_dataset({"--merge", folder_ / "in/part"})}) {
+  generate(folder_ / "in/shard");
+  replace(folder_ / "in/shard/config.yaml", "tool_version: \"0.", "tool_version: \"9.");
+  for (const ProgramResult& result : {merge(), run_generate_dataset({"--verify", folder_ / "in/shard"}),
+                                      run_generate_dataset({"--merge", folder_ / "in/shard"})}) {
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_THAT(result.error, HasSubstr("tool_version"));
   }

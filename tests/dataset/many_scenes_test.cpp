@@ -41,8 +41,8 @@ TEST(ManyScenes, HaveNamesAndSeedsOfTheirOwn) {
 
 TEST(ManyScenes, AreDealtToShardsWithoutLoss) {
   std::set<SceneId> all;
-  for (int part = 1; part <= 7; ++part)
-    for (const SceneId& id : list_scenes(many_scenes(), {.index = part, .count = 7}))
+  for (int shard = 1; shard <= 7; ++shard)
+    for (const SceneId& id : list_scenes(many_scenes(), {.index = shard, .count = 7}))
       EXPECT_TRUE(all.insert(id).second);
   EXPECT_EQ(all.size(), std::size_t{kScenes});
 }

@@ -1,4 +1,4 @@
-// Parts of a data set whose scenes are packed into tar files.
+// Shards of a data set whose scenes are packed into tar files.
 #include "dataset/shards.hpp"
 #include "tubebin/jobs/folder_lock.hpp"
 #include "tubebin/scene/dataset_files.hpp"
@@ -24,7 +24,7 @@ class Packs : public Shards {
 };
 
 TEST_F(Packs, HoldTheSameBytesInOneFileAPart) {
-  for (const char* part : {"1/2", "2/2"}) ASSERT_EQ(generate(data_, {"--shard", part, "--pack"}).exit_code, 0);
+  for (const char* shard : {"1/2", "2/2"}) ASSERT_EQ(generate(data_, {"--shard", shard, "--pack"}).exit_code, 0);
   EXPECT_TRUE(fs::exists(data_ + "/packs/00001-of-00002.tar"));
   EXPECT_FALSE(fs::exists(data_ + "/Q1"));
   EXPECT_EQ(all_files(data_), expected_);
@@ -61,15 +61,15 @@ TEST_F(Packs, GoOnWhereTheyWereKilled) {
 }
 
 TEST_F(Packs, ArePackedByOneRunAtATime) {
-  const std::vector<std::string> part = {"--shard", "1/2", "--pack"};
+  const std::vector<std::string> shard = {"--shard", "1/2", "--pack"};
   ASSERT_EQ(generate(data_, {"--shard", "2/2", "--pack"}).exit_code, 0);
   {
-    const jobs::FolderLock other(OutputFolder(data_).make_inner(kPartsFolder), jobs::Shard{.index = 1, .count = 2});
-    const ProgramResult refused = generate(data_, part);
+    const jobs::FolderLock other(OutputFolder(data_).make_inner(kShardsFolder), jobs::Shard{.index = 1, .count = 2});
+    const ProgramResult refused = generate(data_, shard);
     EXPECT_EQ(refused.exit_code, 1);  // a scheduler may start it again
-    EXPECT_THAT(refused.error, HasSubstr(fmt::format("process {} is packing part 00001-of-00002", getpid())));
+    EXPECT_THAT(refused.error, HasSubstr(fmt::format("process {} is packing shard 00001-of-00002", getpid())));
   }
-  EXPECT_EQ(generate(data_, part).exit_code, 0);
+  EXPECT_EQ(generate(data_, shard).exit_code, 0);
   EXPECT_EQ(run_generate_dataset({"--merge", data_}).exit_code, 0);
   EXPECT_EQ(all_files(data_), expected_);
 }
@@ -87,7 +87,7 @@ TEST_F(Packs, AreMergedAndCompleted) {
 }
 
 TEST_F(Packs, OfOneSharedFolderAreMerged) {
-  for (const char* part : {"2/3", "1/3", "3/3"}) ASSERT_EQ(generate(data_, {"--shard", part, "--pack"}).exit_code, 0);
+  for (const char* shard : {"2/3", "1/3", "3/3"}) ASSERT_EQ(generate(data_, {"--shard", shard, "--pack"}).exit_code, 0);
   const ProgramResult merged = run_generate_dataset({"--merge", data_});
   EXPECT_EQ(merged.exit_code, 0) << merged.out << merged.error;
   EXPECT_FALSE(fs::exists(data_ + "/manifest.parts"));

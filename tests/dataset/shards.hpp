@@ -1,4 +1,4 @@
-/// Data sets made in parts, beside those of one machine.
+/// Data sets made in shards, beside those of one machine.
 #pragma once
 
 #include <gmock/gmock.h>

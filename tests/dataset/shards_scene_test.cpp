@@ -1,4 +1,4 @@
-// Data sets made in parts: into one folder or several, at once, interrupted, merged. The scenes are those of one machine,
+// Data sets made in shards: into one folder or several, at once, interrupted, merged. The scenes are those of one machine,
 // byte for byte.
 #include <cstdlib>
 
@@ -27,18 +27,18 @@ class Variable {
 };
 
 TEST_F(Shards, WriteOneFolderAtOnce) {
-  std::vector<std::unique_ptr<Program>> parts;
-  for (const char* part : {"1/3", "2/3", "3/3"}) {
-    std::vector<std::string> arguments = command(data_, {"--shard", part});
+  std::vector<std::unique_ptr<Program>> shards;
+  for (const char* shard : {"1/3", "2/3", "3/3"}) {
+    std::vector<std::string> arguments = command(data_, {"--shard", shard});
     arguments.insert(arguments.begin(), program_path("generate_dataset"));
-    parts.push_back(std::make_unique<Program>(arguments));
+    shards.push_back(std::make_unique<Program>(arguments));
   }
-  for (const auto& part : parts) {
-    const ProgramResult result = part->wait();
+  for (const auto& shard : shards) {
+    const ProgramResult result = shard->wait();
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.error, AllOf(HasSubstr("of 3 (--shard): "), HasSubstr("of 8 scenes, ")));
   }
-  EXPECT_EQ(Manifest(data_).records().size(), 8u);  // from the parts' files
+  EXPECT_EQ(Manifest(data_).records().size(), 8u);  // from the shards' files
   EXPECT_EQ(run_generate_dataset({"--verify", data_}).exit_code, 0);
   const ProgramResult merged = run_generate_dataset({"--merge", data_});
   EXPECT_EQ(merged.exit_code, 0) << merged.out << merged.error;
@@ -50,14 +50,14 @@ TEST_F(Shards, AreTakenFromTheEnvironment) {
   {
     const Variable id("SLURM_ARRAY_TASK_ID", "12"), min("SLURM_ARRAY_TASK_MIN", "10"),
         max("SLURM_ARRAY_TASK_MAX", "12"), step("SLURM_ARRAY_TASK_STEP", "2"), count("SLURM_ARRAY_TASK_COUNT", "2");
-    EXPECT_THAT(generate(data_).error, HasSubstr("Part 2 of 2 (SLURM_ARRAY_TASK_ID=12, SLURM_ARRAY_TASK_MIN=10, "));
+    EXPECT_THAT(generate(data_).error, HasSubstr("Shard 2 of 2 (SLURM_ARRAY_TASK_ID=12, SLURM_ARRAY_TASK_MIN=10, "));
     EXPECT_EQ(generate(data_, {"--shard-count", "3"}).exit_code, 2);
   }
   {
     const Variable index("JOB_COMPLETION_INDEX", "0");
     EXPECT_EQ(generate(data_).exit_code, 2);
     const Variable count("TUBEBIN_SHARD_COUNT", "2");
-    EXPECT_THAT(generate(data_).error, HasSubstr("Part 1 of 2 (JOB_COMPLETION_INDEX=0, shard count 2): "));
+    EXPECT_THAT(generate(data_).error, HasSubstr("Shard 1 of 2 (JOB_COMPLETION_INDEX=0, shard count 2): "));
   }
   EXPECT_EQ(scene_files(data_), expected_);
 }
@@ -66,10 +66,10 @@ TEST_F(Shards, GoOnWhereTheyWereKilled) {
   for (int round = 0; round < 3; ++round) {
     std::vector<std::string> arguments = command(data_, {"--shard", "1/2"});
     arguments.insert(arguments.begin(), program_path("generate_dataset"));
-    Program part(arguments);
-    wait_until([&] { return !part.running() || Manifest(data_).records().size() > static_cast<std::size_t>(round); });
-    kill(part.process(), SIGKILL);
-    part.wait();
+    Program shard(arguments);
+    wait_until([&] { return !shard.running() || Manifest(data_).records().size() > static_cast<std::size_t>(round); });
+    kill(shard.process(), SIGKILL);
+    shard.wait();
   }
   const ProgramResult first = generate(data_, {"--shard", "1/2"});
   EXPECT_EQ(first.exit_code, 0) << first.error;
@@ -81,13 +81,13 @@ TEST_F(Shards, GoOnWhereTheyWereKilled) {
 
 TEST_F(Shards, LeaveTheUnfinishedScenesOfOthersAlone) {
   fs::create_directories(data_ + "/Q1/.001.other-1-0.partial");
-  const auto of = [&](const std::string& part) {
+  const auto of = [&](const std::string& shard) {
     return list_scenes(
         [&] {
           DatasetConfig config = read_dataset_config(one_machine_);
           return config;
         }(),
-        jobs::parse_shard(part));
+        jobs::parse_shard(shard));
   };
   const std::vector<SceneId> first = of("1/2");
   const bool is_first = std::ranges::find(first, SceneId{"Q", 1, 1}) != first.end();
@@ -118,7 +118,7 @@ TEST_F(Shards, RunTwiceAtOnceDoNoHarm) {
 }
 
 TEST_F(Shards, KeepOutWhoWantsTheFolderForHimself) {
-  const jobs::FolderLock part(OutputFolder(data_), jobs::FolderLock::Kind::part);
+  const jobs::FolderLock shard(OutputFolder(data_), jobs::FolderLock::Kind::shard);
   EXPECT_EQ(generate(data_, {"--shard", "1/2"}).exit_code, 0);
   EXPECT_EQ(generate(data_).exit_code, 2);
   EXPECT_EQ(run_generate_dataset({"--merge", data_}).exit_code, 2);
@@ -126,25 +126,25 @@ TEST_F(Shards, KeepOutWhoWantsTheFolderForHimself) {
 
 class Merge : public Shards {
  protected:
-  std::string part(int i) const { return folder_ / ("part_" + std::to_string(i)); }
-  void make_part(int i, std::vector<std::string> more = {}) {
+  std::string shard(int i) const { return folder_ / ("shard_" + std::to_string(i)); }
+  void make_shard(int i, std::vector<std::string> more = {}) {
     more.insert(more.end(), {"--shard", std::to_string(i) + "/3"});
-    ASSERT_EQ(generate(part(i), more).exit_code, 0);
+    ASSERT_EQ(generate(shard(i), more).exit_code, 0);
   }
-  ProgramResult merge(const std::vector<int>& parts) {
+  ProgramResult merge(const std::vector<int>& shards) {
     std::vector<std::string> arguments = {"--merge", data_};
-    for (const int i : parts) arguments.push_back(part(i));
+    for (const int i : shards) arguments.push_back(shard(i));
     return run_generate_dataset(arguments);
   }
 };
 
 TEST_F(Merge, JoinsFoldersOfParts) {
-  for (int i = 1; i <= 3; ++i) make_part(i);
-  const auto before = scene_files(part(2));
+  for (int i = 1; i <= 3; ++i) make_shard(i);
+  const auto before = scene_files(shard(2));
   const ProgramResult merged = merge({1, 2, 3});
   EXPECT_EQ(merged.exit_code, 0) << merged.out << merged.error;
   expect_as_of_one_machine(data_);
-  EXPECT_EQ(scene_files(part(2)), before);
+  EXPECT_EQ(scene_files(shard(2)), before);
   // Links, not copies.
   EXPECT_EQ(fs::hard_link_count(data_ + "/Q3/001/cloud.pcd"), 2u);
   EXPECT_EQ(merge({3, 1, 2}).exit_code, 0);
@@ -152,9 +152,9 @@ TEST_F(Merge, JoinsFoldersOfParts) {
 }
 
 TEST_F(Merge, NamesWhatIsMissingAndHowToMakeJustThat) {
-  make_part(1);
-  make_part(3);
-  const std::size_t there = scene_files(part(1)).size() / 3 + scene_files(part(3)).size() / 3;
+  make_shard(1);
+  make_shard(3);
+  const std::size_t there = scene_files(shard(1)).size() / 3 + scene_files(shard(3)).size() / 3;
   const ProgramResult merged = merge({1, 3});
   EXPECT_EQ(merged.exit_code, 3);
   EXPECT_THAT(merged.out,
@@ -171,31 +171,32 @@ TEST_F(Merge, CompletesASharedFolderWhereAPartIsMissing) {
   ASSERT_EQ(generate(data_, {"--shard", "2/3"}).exit_code, 0);
   const ProgramResult merged = run_generate_dataset({"--merge", data_});
   EXPECT_EQ(merged.exit_code, 3);
-  EXPECT_TRUE(fs::exists(data_ + "/manifest.parts"));  // other parts may still be at work
+  EXPECT_TRUE(fs::exists(data_ + "/manifest.parts"));  // other shards may still be at work
   EXPECT_EQ(run_printed_command(merged.out).exit_code, 0);
   EXPECT_EQ(run_generate_dataset({"--merge", data_}).exit_code, 0);
   expect_as_of_one_machine(data_);
 }
 
 TEST_F(Merge, RefusesFoldersOfAnotherSeedOrConfiguration) {
-  make_part(1);
-  make_part(2, {"--seed", "6"});
+  make_shard(1);
+  make_shard(2, {"--seed", "6"});
   const ProgramResult merged = merge({1, 2});
   EXPECT_EQ(merged.exit_code, 2);
-  EXPECT_THAT(merged.error, AllOf(HasSubstr(part(1)), HasSubstr(part(2)), HasSubstr("seed: 5 there, 6 here")));
+  EXPECT_THAT(merged.error, AllOf(HasSubstr(shard(1)), HasSubstr(shard(2)), HasSubstr("seed: 5 there, 6 here")));
   EXPECT_FALSE(fs::exists(data_));
   EXPECT_EQ(run_generate_dataset({"--merge", data_, folder_ / "nowhere"}).exit_code, 1);
 }
 
 TEST_F(Merge, FindsAByteThatFlipped) {
-  for (int i = 1; i <= 3; ++i) make_part(i);
-  const std::string scene = list_scenes(read_dataset_config(part(2)), {2, 3}).front().name();
-  std::string bytes = read_text(part(2) + "/" + scene + "/cloud.pcd");
+  for (int i = 1; i <= 3; ++i) make_shard(i);
+  const std::string scene = list_scenes(read_dataset_config(shard(2)), {2, 3}).front().name();
+  std::string bytes = read_text(shard(2) + "/" + scene + "/cloud.pcd");
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
-  write_text(part(2) + "/" + scene + "/cloud.pcd", bytes);
+  write_text(shard(2) + "/" + scene + "/cloud.pcd", bytes);
   const ProgramResult merged = merge({1, 2, 3});
   EXPECT_EQ(merged.exit_code, 3);
-  EXPECT_THAT(merged.out, AllOf(HasSubstr(part(2) + "/" + scene + ": cloud.pcd has hash"), HasSubstr("7 of 8 scenes")));
+  EXPECT_THAT(merged.out,
+              AllOf(HasSubstr(shard(2) + "/" + scene + ": cloud.pcd has hash"), HasSubstr("7 of 8 scenes")));
   EXPECT_EQ(run_printed_command(merged.out).exit_code, 0);
   expect_as_of_one_machine(data_);
 }

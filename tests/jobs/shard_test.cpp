@@ -1,4 +1,4 @@
-// Parts of a job: who says which part this is, and what is dealt to it.
+// Shards of a job: who says which shard this is, and which items it has.
 #include "tubebin/jobs/shard.hpp"
 
 #include <gmock/gmock.h>
@@ -85,18 +85,18 @@ TEST(ChooseShard, AwsBatchCountsFromZero) {
   EXPECT_THROW(choose({{"AWS_BATCH_JOB_ARRAY_INDEX", "4"}}), ConfigError);
 }
 
-/// What each part is given to do.
-std::vector<std::int64_t> loads(const std::vector<std::int64_t>& costs, int parts) {
+/// What each shard is given to do.
+std::vector<std::int64_t> loads(const std::vector<std::int64_t>& costs, int shards) {
   std::vector<std::int64_t> loads;
   std::vector<int> owners(costs.size(), 0);
-  for (int part = 1; part <= parts; ++part) {
+  for (int shard = 1; shard <= shards; ++shard) {
     loads.push_back(0);
-    for (const std::size_t i : deal(costs, {part, parts})) {
+    for (const std::size_t i : items_of_shard(costs, {shard, shards})) {
       loads.back() += costs[i];
       ++owners[i];
     }
   }
-  EXPECT_THAT(owners, ::testing::Each(1));  // everything is dealt, and once
+  EXPECT_THAT(owners, ::testing::Each(1));  // every item belongs to a shard, and to one
   return loads;
 }
 
@@ -104,17 +104,17 @@ TEST(Deal, GivesPartsAboutEqualWork) {
   dataset::DatasetConfig config;  // set A: 1 to 15 and 20 tubes, 20 cases each
   std::vector<std::int64_t> costs;
   for (const dataset::SceneId& id : dataset::list_scenes(config)) costs.push_back(generation_cost(id.tubes));
-  for (const int parts : {2, 3, 7, 16, 50}) {
-    const std::vector<std::int64_t> dealt = loads(costs, parts);
-    const auto [least, most] = std::minmax_element(dealt.begin(), dealt.end());
-    EXPECT_LT(static_cast<double>(*most), 1.10 * static_cast<double>(*least)) << parts;
+  for (const int shards : {2, 3, 7, 16, 50}) {
+    const std::vector<std::int64_t> loads_of_shards = loads(costs, shards);
+    const auto [least, most] = std::minmax_element(loads_of_shards.begin(), loads_of_shards.end());
+    EXPECT_LT(static_cast<double>(*most), 1.10 * static_cast<double>(*least)) << shards;
   }
 }
 
 TEST(Deal, StaysWithinGrahamsBound) {
-  // The best dealing of 7 7 6 6 5 5 4 4 4 to four parts is 12 each; this rule reaches 15 <= 12 (4/3 - 1/12).
-  const std::vector<std::int64_t> dealt = loads({7, 7, 6, 6, 5, 5, 4, 4, 4}, 4);
-  EXPECT_EQ(*std::max_element(dealt.begin(), dealt.end()), 15);
+  // The best distribution of 7 7 6 6 5 5 4 4 4 to four shards is 12 each; this rule reaches 15 <= 12 (4/3 - 1/12).
+  const std::vector<std::int64_t> loads_of_shards = loads({7, 7, 6, 6, 5, 5, 4, 4, 4}, 4);
+  EXPECT_EQ(*std::max_element(loads_of_shards.begin(), loads_of_shards.end()), 15);
 }
 
 TEST(Deal, LeavesPartsEmptyWhereThereIsTooLittle) {

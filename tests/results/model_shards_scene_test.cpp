@@ -1,4 +1,4 @@
-// Clouds modelled in parts, of data sets that were made in parts, loose or packed.
+// Clouds modelled in shards, of data sets that were made in shards, loose or packed.
 #include <nlohmann/json.hpp>
 
 #include "dataset/shards.hpp"
@@ -41,8 +41,8 @@ class ModelShards : public Shards {
 };
 
 TEST_F(ModelShards, MakeTheResultsOfOneMachineInOneFolder) {
-  for (const char* part : {"1/3", "2/3", "3/3"}) {
-    const ProgramResult result = model(one_machine_, results_, {"--shard", part});
+  for (const char* shard : {"1/3", "2/3", "3/3"}) {
+    const ProgramResult result = model(one_machine_, results_, {"--shard", shard});
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.error, AllOf(HasSubstr("of 3 (--shard): "), HasSubstr("of 8 clouds, ")));
   }
@@ -52,9 +52,9 @@ TEST_F(ModelShards, MakeTheResultsOfOneMachineInOneFolder) {
 
 TEST_F(ModelShards, AreEvaluatedFromFoldersOfTheirOwn) {
   std::vector<std::string> folders;
-  for (const char* part : {"1", "2", "3"}) {
-    folders.push_back(folder_ / (std::string("results_") + part));
-    ASSERT_EQ(model(one_machine_, folders.back(), {"--shard", std::string(part) + "/3"}).exit_code, 0);
+  for (const char* shard : {"1", "2", "3"}) {
+    folders.push_back(folder_ / (std::string("results_") + shard));
+    ASSERT_EQ(model(one_machine_, folders.back(), {"--shard", std::string(shard) + "/3"}).exit_code, 0);
   }
   const auto evaluate = [](std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--format", "json", "--quiet"});
@@ -64,7 +64,7 @@ TEST_F(ModelShards, AreEvaluatedFromFoldersOfTheirOwn) {
   const ProgramResult alone = evaluate({one_results_});
   EXPECT_EQ(together.exit_code, 0) << together.error;
   EXPECT_EQ(recall_of(together.out), recall_of(alone.out));
-  // Without a part, exactly its runs are missing.
+  // Without a shard, exactly its runs are missing.
   const ProgramResult two = evaluate({folders[0], folders[2]});
   EXPECT_EQ(two.exit_code, 3);
   EXPECT_THAT(two.error, HasSubstr(fmt::format("{} runs are not there yet", result_files(folders[1]).size() / 2)));
@@ -77,7 +77,7 @@ TEST_F(ModelShards, AreEvaluatedFromFoldersOfTheirOwn) {
   const ProgramResult complete = evaluate({folders[0], folders[2]});
   EXPECT_EQ(complete.exit_code, 0) << complete.error;
   EXPECT_EQ(recall_of(complete.out), recall_of(alone.out));
-  // Parts of another seed don't belong to them.
+  // Shards of another seed don't belong to them.
   const std::string other = folder_ / "other_seed";
   ASSERT_EQ(model(one_machine_, other, {"--shard", "2/3", "--seed", "9"}).exit_code, 0);
   const ProgramResult mixed = evaluate({folders[1], other});
@@ -86,7 +86,7 @@ TEST_F(ModelShards, AreEvaluatedFromFoldersOfTheirOwn) {
 }
 
 TEST_F(ModelShards, ReadPacksDirectly) {
-  for (const char* part : {"1/2", "2/2"}) ASSERT_EQ(generate(data_, {"--shard", part, "--pack"}).exit_code, 0);
+  for (const char* shard : {"1/2", "2/2"}) ASSERT_EQ(generate(data_, {"--shard", shard, "--pack"}).exit_code, 0);
   ASSERT_EQ(model(data_, results_).exit_code, 0);
   EXPECT_EQ(result_files(results_), result_files(one_results_));
   const ProgramResult packed =

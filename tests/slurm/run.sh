@@ -182,7 +182,7 @@ for line in sorted(open(sys.argv[1])):
 diff <(records "$work/data/manifest.jsonl") <(records "$work/one/manifest.jsonl")
 diff -r --exclude=.lock --exclude=manifest.jsonl "$work/data" "$work/one"
 diff -r --exclude=.lock --exclude=times.json --exclude=index.json --exclude=report.html "$work/results" "$work/one_results"
-"$bin/evaluate" "$work/results" --format csv | cut -d, -f1-8 > "$work/parts.csv"
+"$bin/evaluate" "$work/results" --format csv | cut -d, -f1-8 > "$work/shards.csv"
 "$bin/evaluate" "$work/one_results" --format csv | cut -d, -f1-8 > "$work/one.csv"
-diff "$work/parts.csv" "$work/one.csv"
+diff "$work/shards.csv" "$work/one.csv"
 echo "The same bytes: $(find "$work/data" -type f | wc -l) files of the data set, $(find "$work/results" -type f | wc -l) of the results"

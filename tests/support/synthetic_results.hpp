@@ -98,9 +98,9 @@ inline nlohmann::json model_json(const scene::SceneRecord& scene) {
   nlohmann::json tubes = nlohmann::json::array();
   for (const scene::PlacedTube& tube : scene.scene.tubes) {
     nlohmann::json cylinders = nlohmann::json::array();
-    for (const evaluation::CenterlineSegment& piece : evaluation::centerline(tube))
-      cylinders.push_back({{"start", {piece.start.x(), piece.start.y(), piece.start.z() + 0.0004}},
-                           {"end", {piece.end.x(), piece.end.y(), piece.end.z() + 0.0004}},
+    for (const evaluation::CenterlineSegment& segment : evaluation::centerline(tube))
+      cylinders.push_back({{"start", {segment.start.x(), segment.start.y(), segment.start.z() + 0.0004}},
+                           {"end", {segment.end.x(), segment.end.y(), segment.end.z() + 0.0004}},
                            {"radius", tube.tube.radius}});
     tubes.push_back({{"cylinders", cylinders}});
   }

@@ -1,5 +1,5 @@
 /// The output folder of one data set: locked, made by one configuration, with its manifest and scenes. Several hosts
-/// may each make a part of one folder.
+/// may each make a shard in one folder.
 #pragma once
 
 #include <memory>
@@ -29,14 +29,14 @@ class DatasetFolder {
   /// where it can't be written.
   DatasetFolder(const std::string& folder, const DatasetConfig& config);
 
-  /// What becomes of a part's scenes.
-  enum class Part { loose, packed };
+  /// What becomes of a shard's scenes.
+  enum class ShardScenes { loose, packed };
 
-  /// The same for a part of the scenes, while others may make the other parts: touches nothing but these scenes. Throws
-  /// IoError where another run packs the same part.
-  DatasetFolder(const std::string& folder, const DatasetConfig& config, const jobs::Shard& shard, Part part);
+  /// The same for one shard, while others may make the other shards: touches nothing but its scenes. Throws
+  /// IoError where another run packs the same shard.
+  DatasetFolder(const std::string& folder, const DatasetConfig& config, const jobs::Shard& shard, ShardScenes scenes);
 
-  /// Removes what workers were stopped in the middle of, but for a part.
+  /// Removes what workers were stopped in the middle of; not for a shard.
   ~DatasetFolder();
   DatasetFolder(const DatasetFolder&) = delete;
   DatasetFolder& operator=(const DatasetFolder&) = delete;
@@ -57,7 +57,7 @@ class DatasetFolder {
   void remove_unfinished() const;
 
   OutputFolder folder_;
-  std::optional<std::vector<SceneId>> part_;  // of whoever makes a part alone
+  std::optional<std::vector<SceneId>> shard_scenes_;  // of whoever makes a shard alone
   jobs::FolderLock lock_;
   DatasetConfig config_;
   SceneStore store_;

@@ -1,6 +1,6 @@
 /// manifest.jsonl: one line of JSON for each complete scene of a data set, appended when the scene is complete.
 ///
-/// Runs that make a part each of one folder, on several hosts, write no file together: each appends to a file of its
+/// Runs that make a shard each in one folder, on several hosts, write no file together: each appends to a file of its
 /// own in manifest.parts/, and whoever reads the manifest reads them all.
 #pragma once
 
@@ -37,18 +37,18 @@ std::string format_manifest_record(const ManifestRecord& record);
 /// Throws IoError saying what is missing or wrong, also where a name leads out of its folder.
 ManifestRecord parse_manifest_record(const std::string& line);
 
-/// In a data set's folder: where the runs of parts keep files of their own until the parts are joined.
-constexpr const char* kPartsFolder = "manifest.parts";
+/// In a data set's folder: where the runs of shards keep files of their own until they are merged.
+constexpr const char* kShardsFolder = "manifest.parts";
 
 class Manifest {
  public:
-  /// Reads `folder`/manifest.jsonl and the parts, if they are there. Of two records of one scene the later one counts, but
+  /// Reads `folder`/manifest.jsonl and the shards' files, if they are there. Of two records of one scene the later one counts, but
   /// for one of a packed scene, which only another such replaces: packing comes last.
   /// This one is only read.
   explicit Manifest(const std::string& folder);
   explicit Manifest(const OutputFolder& folder);
 
-  /// Of a run that makes these scenes, the part `shard`: it reads the records of these alone and appends to a file of
+  /// Of a run that makes these scenes, the shard `shard`: it reads the records of these alone and appends to a file of
   /// its own.
   Manifest(const OutputFolder& folder, const jobs::Shard& shard, const std::vector<SceneId>& scenes);
 
@@ -61,7 +61,7 @@ class Manifest {
   /// Appends a line; after an error (IoError) the file is as it was before.
   void append(const ManifestRecord& record);
 
-  /// Writes manifest.jsonl anew, with all records but those of these scenes, and removes the parts. For whoever has
+  /// Writes manifest.jsonl anew, with all records but those of these scenes, and removes the shards' files. For whoever has
   /// the folder to himself.
   void rewrite_without(const std::set<std::string>& ids);
 
@@ -78,8 +78,8 @@ class Manifest {
   void read_all(const std::string& folder, const std::set<std::string>* wanted);
 
   std::optional<OutputFolder> output_;  // nothing where it is only read
-  ConfinedPath file_ = kFile;           // that append() writes to; of a part, the folder itself until it is made
-  std::string part_name_;               // of a shard's run
+  ConfinedPath file_ = kFile;           // that append() writes to; of a shard, the folder itself until it is made
+  std::string shard_name_;              // of a shard's run
   std::size_t complete_bytes_ = 0;      // of `file_`, up to the end of the last complete line
   std::map<std::string, ManifestRecord> records_;
   std::vector<std::string> damaged_lines_;

@@ -1,4 +1,4 @@
-/// Joining what the parts of a data set made, in folders of their own or in one.
+/// Merging the shards of a data set, made in folders of their own or in one.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ struct MergeReport {
 /// Makes `output` the data set that one machine would have made: checks that all folders are of one configuration,
 /// seed and version, compares every file with its recorded hash, links the scenes (copies them where the disk is another
 /// one) and writes one manifest in the configuration's order. Without folders it completes the manifest of `output`,
-/// where the parts wrote into that one folder. The folders stay as they are; merging again goes on.
+/// where the shards wrote into that one folder. The folders stay as they are; merging again goes on.
 ///
 /// Throws IoError, ConfigError where the folders don't belong together (with all differing keys) or a run is writing to
 /// `output`.

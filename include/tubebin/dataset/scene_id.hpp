@@ -21,7 +21,7 @@ struct SceneId {
   auto operator<=>(const SceneId&) const = default;
 };
 
-/// The scenes that the configuration asks for, in order: all, or those that are dealt to a part of them by their cost.
+/// The scenes that the configuration asks for, in order: all, or those of a shard, distributed by their cost.
 std::vector<SceneId> list_scenes(const DatasetConfig& config, jobs::Shard shard = {});
 
 }  // namespace tubebin::dataset

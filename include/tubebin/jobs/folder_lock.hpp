@@ -1,4 +1,4 @@
-/// One run at a time in one output folder, or all parts of one.
+/// One run at a time in one output folder, or all shards of one run.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@ namespace tubebin::jobs {
 
 /// Holds an advisory lock on `folder`/.lock while it lives. Processes forked from its holder share it, so it is free
 /// once all of them have ended, however they ended. File systems that keep no locks, as some of a network, give it to
-/// everybody: it finds the mistake of starting two runs, and parts of one job don't depend on it.
+/// everybody: it finds the mistake of starting two runs, and shards of one job don't depend on it.
 class FolderLock {
  public:
   enum class Kind {
     exclusive,
     shared,  ///< of those who only read; no file is made for it
-    part     ///< of those who each make their own part; it keeps those out who want the folder to themselves
+    shard    ///< of those who each make a shard of their own; it keeps those out who want the folder to themselves
   };
 
   /// Throws ConfigError where another run holds the folder (naming its process) and IoError where the lock file
@@ -26,7 +26,7 @@ class FolderLock {
   /// Of who only reads: makes no file. Throws as above.
   explicit FolderLock(const std::string& folder);
 
-  /// Of one part, which two runs can't pack into one tar at once, by a file of its own in `folder`. Throws IoError
+  /// Of one shard, which two runs can't pack into one tar at once, by a file of its own in `folder`. Throws IoError
   /// where another run holds it (as where a scheduler has lost sight of that run's host: starting again is right) and
   /// where the lock file can't be made.
   FolderLock(const OutputFolder& folder, const Shard& packed_part);

@@ -1,5 +1,5 @@
-/// Which part of a job this process does, and how work is dealt to the parts. No part talks to another: each computes
-/// the same dealing from the same list.
+/// Which shard of a job this process does, and how work is distributed to shards. No shard talks to another: each
+/// computes the same distribution from the same list.
 #pragma once
 
 #include <cstddef>
@@ -11,44 +11,44 @@
 
 namespace tubebin::jobs {
 
-/// Part `index` (from 1) of `count`, which together are the whole.
+/// Shard `index` (from 1) of `count`, which together are the whole.
 struct Shard {
   int index = 1;
   int count = 1;
 
   bool is_whole() const { return count == 1; }
-  /// "00002-of-00004", as files of the part are called.
+  /// "00002-of-00004", as its files are called.
   std::string name() const;
   friend bool operator==(const Shard&, const Shard&) = default;
 };
 
-/// "2/4" -> part 2 of 4. Throws ConfigError.
+/// "2/4" -> shard 2 of 4. Throws ConfigError.
 Shard parse_shard(const std::string& text);
 
-/// A part, and who said so.
+/// A shard, and who said so.
 struct ShardChoice {
   Shard shard;
   std::string source;  ///< "--shard", or the scheduler's variables with their values; empty where nobody said anything
 
-  /// What this process does only a part of, or was asked to by a scheduler.
+  /// Whether this process does one shard only, or was asked to by a scheduler.
   bool is_sharded() const { return !source.empty(); }
 };
 
 /// Value of an environment variable, or null.
 using Environment = std::function<const char*(const char*)>;
 
-/// The part that `option` ("2/4") asks for; where it is empty, the one that a scheduler gave this process:
+/// The shard that `option` ("2/4") asks for; where it is empty, the one that a scheduler gave this process:
 /// - Slurm: SLURM_ARRAY_TASK_ID with its MIN, STEP and COUNT (an array may start anywhere);
 /// - Kubernetes (Indexed Job): JOB_COMPLETION_INDEX, from 0, and `count`;
 /// - AWS Batch: AWS_BATCH_JOB_ARRAY_INDEX, from 0, and `count` or AWS_BATCH_JOB_ARRAY_SIZE.
-/// `count` is checked where the scheduler says the number of parts itself. Throws ConfigError where the variables
-/// contradict each other or leave the number of parts open.
+/// `count` is checked where the scheduler says the number of shards itself. Throws ConfigError where the variables
+/// contradict each other or leave the number of shards open.
 ShardChoice choose_shard(const std::string& option, std::optional<int> count, const Environment& environment);
 
-/// Whose work this is: positions, ascending, of the things with these costs that the part does. Each thing goes, the
-/// dearest first, to the part with the least to do (Graham 1969, longest processing time first: no part does more than
-/// 4/3 of what the best dealing could reach).
-std::vector<std::size_t> deal(const std::vector<std::int64_t>& costs, Shard shard);
+/// Indices, ascending, of those of the items with these costs that the shard does. Each item goes, the dearest first,
+/// to the shard with the least to do (Graham 1969, longest processing time first: no shard does more than
+/// 4/3 of what the best distribution could reach).
+std::vector<std::size_t> items_of_shard(const std::vector<std::int64_t>& costs, Shard shard);
 
 /// What scenes of so many tubes cost beside each other: microseconds of one core, as measured (docs/scale_out.md).
 std::int64_t generation_cost(int tubes);

@@ -24,10 +24,9 @@ struct BatchOptions {
   bool keep_clouds = false;
   std::vector<std::string> scenes = {};         ///< these alone; empty: all
   std::vector<std::string> other_results = {};  ///< runs that one of these folders has are not done again
-  std::optional<jobs::Shard>
-      shard;  ///< does the runs of a part of the clouds only, while others may do the other parts
-  /// Told, before a part's work begins, how many of how many clouds are its own, and their share of the work.
-  std::function<void(std::size_t own, std::size_t all, double share)> on_dealt = [](auto...) {};
+  std::optional<jobs::Shard> shard;  ///< does the runs of these clouds only, while others may do the other shards
+  /// Told, before a shard's work begins, how many of how many clouds are its own, and their share of the work.
+  std::function<void(std::size_t own, std::size_t all, double share)> on_shard = [](auto...) {};
 };
 
 struct BatchReport {
@@ -42,7 +41,7 @@ struct BatchReport {
 /// "0.1:1.0:0.1" (first, last, step) or "0.1,0.3,1". Throws ConfigError.
 std::vector<double> parse_ratios(const std::string& text);
 
-/// The call that results folders, one or those of its parts, were made with, for the runs that none of them has yet. They
+/// The call that results folders, one or those of its shards, were made with, for the runs that none of them has yet. They
 /// go into the first one. Throws IoError where it is no results folder, ConfigError where another version made it.
 struct ResumedBatch {
   BatchOptions options;

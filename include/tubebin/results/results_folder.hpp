@@ -15,7 +15,7 @@ struct ResultsOptions {
   std::vector<std::string> names = {};  ///< of the folders, to tell them apart by; empty: what differs is told
 };
 
-/// Reads one or several results folders together: parts of one call, or calls of other options, whose runs have the name
+/// Reads one or several results folders together: shards of one call, or calls of other options, whose runs have the name
 /// of the setting ("radius: estimated") in the place of the method's, or after it where there are several. Runs that an index asks for and that are not there yet are
 /// left out and named; failed ones count as zero. Throws IoError naming the file and the place where a folder
 /// is no results folder, has no complete run, or a file in it is damaged; and where two folders of one name have the same

@@ -120,7 +120,7 @@ std::optional<CylinderAxis> take_cylinder(const FilteredCloud& cloud, Segment& r
 }
 
 /// Gives every point to the cylinder whose surface it is nearest to.
-void settle_inliers(const FilteredCloud& cloud, std::vector<CylinderAxis>& axes, double radius) {
+void reassign_inliers(const FilteredCloud& cloud, std::vector<CylinderAxis>& axes, double radius) {
   Segment all;
   for (CylinderAxis& axis : axes) {
     all.insert(all.end(), axis.inliers.begin(), axis.inliers.end());
@@ -148,14 +148,14 @@ void find_extents(const FilteredCloud& cloud, std::vector<CylinderAxis>& axes) {
 }
 
 /// The first cylinders of a segment cut across its bends, and the later ones make do with the strips that were left:
-/// points and axes are settled in turns, as k-means does, and cylinders that others can do without go.
-void settle(const FilteredCloud& cloud, std::vector<CylinderAxis>& axes, double radius,
-            const RegionGrowingOptions& options) {
+/// inliers and axes are found in turns, as k-means does, and cylinders that others can do without go.
+void refine_jointly(const FilteredCloud& cloud, std::vector<CylinderAxis>& axes, double radius,
+                    const RegionGrowingOptions& options) {
   constexpr int kRounds = 4;
   const double band = options.inlier_distance * radius;
   for (int round = 0; round < kRounds && !axes.empty(); ++round) {
     find_extents(cloud, axes);
-    settle_inliers(cloud, axes, radius);
+    reassign_inliers(cloud, axes, radius);
     for (CylinderAxis& axis : axes) refine(cloud, axis, radius);
     find_extents(cloud, axes);
     const auto fewest = std::min_element(axes.begin(), axes.end(), [](const CylinderAxis& a, const CylinderAxis& b) {
@@ -176,7 +176,7 @@ void settle(const FilteredCloud& cloud, std::vector<CylinderAxis>& axes, double 
   }
   if (axes.empty()) return;
   find_extents(cloud, axes);
-  settle_inliers(cloud, axes, radius);
+  reassign_inliers(cloud, axes, radius);
 }
 
 /// From the first to the last of its points along the axis, a hundredth of them cut off at either end as strays.
@@ -245,7 +245,7 @@ std::vector<TubePiece> fit_cylinders(const FilteredCloud& cloud, const Segment& 
     if (!axis) break;
     axes.push_back(std::move(*axis));
   }
-  settle(cloud, axes, radius, options);
+  refine_jointly(cloud, axes, radius, options);
   std::vector<TubePiece> pieces;
   for (const CylinderAxis& axis : axes) {
     if (static_cast<int>(axis.inliers.size()) < options.region_size_min) continue;

@@ -43,7 +43,7 @@ StretchEvidence OcclusionTest::around(const Vec3& center, const Vec3& direction)
   if (in_solid(center)) return {.hidden = 0.0, .surface = 0.0, .empty = 1.0, .no_data = 0.0};
   // Half of the width is clear of what the silhouettes' neighbours cover by chance.
   constexpr double kMiddle[] = {-0.5, 0.0, 0.5};
-  StretchEvidence evidence = look(center, direction, kMiddle);
+  StretchEvidence evidence = evidence_across(center, direction, kMiddle);
   // Behind a tube that is not there the scanner would mostly have measured something, or nothing is in reach.
   evidence.empty += evidence.no_data;
   return evidence;
@@ -51,7 +51,7 @@ StretchEvidence OcclusionTest::around(const Vec3& center, const Vec3& direction)
 
 StretchEvidence OcclusionTest::sides(const Vec3& center, const Vec3& direction) const {
   constexpr double kSides[] = {-0.8, 0.8};
-  return look(center, direction, kSides);
+  return evidence_across(center, direction, kSides);
 }
 
 OcclusionTest OcclusionTest::with_radius(double radius) const {
@@ -61,7 +61,8 @@ OcclusionTest OcclusionTest::with_radius(double radius) const {
 }
 
 /// At points of the surface so many radii to the right and left of the centreline, as the scanner sees it.
-StretchEvidence OcclusionTest::look(const Vec3& center, const Vec3& direction, std::span<const double> across) const {
+StretchEvidence OcclusionTest::evidence_across(const Vec3& center, const Vec3& direction,
+                                               std::span<const double> across) const {
   StretchEvidence sum;
   const Vec3 to_viewpoint = viewpoint_ - center;
   const Vec3 up = (to_viewpoint - to_viewpoint.dot(direction) * direction).normalized();

@@ -39,7 +39,7 @@ class OcclusionTest {
   double hidden_reach(const Vec3& end, const Vec3& outward, double limit) const;
 
  private:
-  StretchEvidence look(const Vec3& center, const Vec3& direction, std::span<const double> across) const;
+  StretchEvidence evidence_across(const Vec3& center, const Vec3& direction, std::span<const double> across) const;
   bool in_solid(const Vec3& point) const;
 
   Vec3 viewpoint_;

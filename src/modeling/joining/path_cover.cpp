@@ -10,12 +10,12 @@
 namespace tubebin::modeling {
 namespace {
 
-/// One part of the problem: items that candidates link, and those candidates.
-class PartSolver {
+/// One connected component of the problem: items that candidates link, and those candidates.
+class ComponentSolver {
  public:
-  PartSolver(std::span<const PathCandidate> candidates, std::vector<std::uint32_t> items,
-             std::vector<std::uint32_t> open, std::size_t item_count,
-             std::span<const std::vector<std::uint32_t>> excluded_by, std::size_t node_limit)
+  ComponentSolver(std::span<const PathCandidate> candidates, std::vector<std::uint32_t> items,
+                  std::vector<std::uint32_t> open, std::size_t item_count,
+                  std::span<const std::vector<std::uint32_t>> excluded_by, std::size_t node_limit)
       : candidates_(candidates),
         excluded_by_(excluded_by),
         items_(std::move(items)),
@@ -197,18 +197,19 @@ std::vector<std::uint32_t> cheapest_path_cover(std::size_t item_count, std::span
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
   for (const PathCandidate& candidate : candidates)
     for (const std::uint32_t item : candidate.items) links.emplace_back(candidate.items.front(), item);
-  const std::vector<std::uint32_t> part_of_item = connected_components(item_count, links);
+  const std::vector<std::uint32_t> component_of_item = connected_components(item_count, links);
   std::vector<std::vector<std::uint32_t>> items, open;
   for (std::uint32_t i = 0; i < item_count; ++i) {
-    if (part_of_item[i] >= items.size()) items.resize(part_of_item[i] + 1);
-    items[part_of_item[i]].push_back(i);
+    if (component_of_item[i] >= items.size()) items.resize(component_of_item[i] + 1);
+    items[component_of_item[i]].push_back(i);
   }
   open.resize(items.size());
-  for (std::uint32_t c = 0; c < candidates.size(); ++c) open[part_of_item[candidates[c].items.front()]].push_back(c);
+  for (std::uint32_t c = 0; c < candidates.size(); ++c)
+    open[component_of_item[candidates[c].items.front()]].push_back(c);
 
   std::vector<std::uint32_t> cover;
-  for (std::size_t part = 0; part < items.size(); ++part) {
-    const auto chosen = PartSolver(candidates, items[part], open[part], item_count, excluded_by, node_limit).solve();
+  for (std::size_t k = 0; k < items.size(); ++k) {
+    const auto chosen = ComponentSolver(candidates, items[k], open[k], item_count, excluded_by, node_limit).solve();
     cover.insert(cover.end(), chosen.begin(), chosen.end());
   }
   std::sort(cover.begin(), cover.end());

@@ -48,7 +48,7 @@ View view_of(const Eigen::AlignedBox3d& bounds, double aspect) {
   view.up = view.backward.cross(view.right);
   const double tan_up = std::tan(kFieldOfView / 2.0) / kMargin;
   const double tan_right = tan_up * aspect;
-  // Each corner keeps the eye at least so far away; along each image axis the two extreme corners settle the
+  // Each corner keeps the eye at least so far away; along each image axis the two extreme corners decide the
   // place.
   Vec3 extreme_low = Vec3::Constant(std::numeric_limits<double>::max());
   Vec3 extreme_high = -extreme_low;
