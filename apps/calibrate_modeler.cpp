@@ -1,4 +1,6 @@
 /// Tunes the parameters of a modelling method on a data set.
+#include <fmt/ranges.h>
+
 #include <optional>
 
 #include "program.hpp"
@@ -44,10 +46,11 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("-o,--output", options.output, "The tuned configuration")->type_name("modeling.yaml")->required();
   app.add_option("-c,--config", arguments.config, "Configuration to begin with; without it, the defaults")
       ->type_name("modeling.yaml");
-  app.add_option("--method", arguments.method,
-                 "centerline or region_growing; without it, the configuration's, or region_growing, which has "
-                 "parameters to tune")
-      ->check(CLI::IsMember({"centerline", "region_growing"}));
+  app.add_option(
+         "--method", arguments.method,
+         fmt::format("{}; without it, the configuration's, or {}, which has parameters to tune",
+                     fmt::join(modeling::method_names(), " or "), name_of(modeling::ModelingMethod::region_growing)))
+      ->check(CLI::IsMember(modeling::method_names()));
   app.add_option("--parameter", arguments.parameters,
                  "KEY, KEY=LOW:HIGH or KEY=LOW:HIGH:log to tune; repeatable; without it, the method's own")
       ->allow_extra_args(false)
@@ -71,9 +74,7 @@ results::ModelConfig resolve_config(const Arguments& arguments) {
   results::ModelConfig config;
   config.modeling.method = modeling::ModelingMethod::region_growing;
   if (!arguments.config.empty()) config = results::load_model_config(arguments.config);
-  if (!arguments.method.empty())
-    config.modeling.method = arguments.method == "centerline" ? modeling::ModelingMethod::centerline
-                                                              : modeling::ModelingMethod::region_growing;
+  if (const auto method = modeling::method_called(arguments.method)) config.modeling.method = *method;
   return config;
 }
 

@@ -1,4 +1,6 @@
 /// Tubes from point clouds: one cloud, or every cloud of a data set.
+#include <fmt/ranges.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -64,8 +66,11 @@ void add_options(CLI::App& app, Arguments& arguments) {
                                "A .pcd or .ply file, or a data set: its folder, or a .tar that --pack made");
   auto* output = app.add_option("-o,--output", arguments.output, "Folder of the results")->type_name("DIR");
   app.add_option("-c,--config", arguments.config, "Options (YAML, see docs/modeling.md)")->type_name("modeling.yaml");
-  app.add_option("--method", arguments.method, "centerline, region_growing, or both (data sets only)")
-      ->check(CLI::IsMember({"centerline", "region_growing", "both"}));
+  std::vector<std::string> methods = modeling::method_names();
+  methods.emplace_back("both");
+  app.add_option("--method", arguments.method,
+                 fmt::format("{}, or both (data sets only)", fmt::join(modeling::method_names(), ", ")))
+      ->check(CLI::IsMember(methods));
   app.add_option("--ratio", arguments.ratio, "Part of the points to keep, above 0 and up to 1");
   app.add_option("--ratios", arguments.ratios, "Ratios for a data set: 0.1,0.3,1 or first:last:step")
       ->type_name("0.1:1.0:0.1");
@@ -209,8 +214,7 @@ results::BatchOptions batch_options(const Arguments& arguments, const results::M
   options.methods = {config.modeling.method};
   options.ratios = {config.modeling.filtering.ratio};
   options.cases = arguments.cases;
-  if (arguments.method == "both")
-    options.methods = {modeling::ModelingMethod::centerline, modeling::ModelingMethod::region_growing};
+  if (arguments.method == "both") options.methods = modeling::all_methods();
   if (!arguments.ratios.empty()) options.ratios = results::parse_ratios(arguments.ratios);
   return options;
 }

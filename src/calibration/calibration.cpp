@@ -65,8 +65,7 @@ std::vector<TunedParameter> choose_parameters(const CalibrationOptions& options,
   if (options.parameters.empty()) {
     std::vector<TunedParameter> parameters = default_parameters(method);
     if (parameters.empty())
-      throw_config_error("method {} has no parameters of its own to tune; name some with --parameter",
-                         results::name_of(method));
+      throw_config_error("method {} has no parameters of its own to tune; name some with --parameter", name_of(method));
     return parameters;
   }
   for (std::size_t i = 0; i < options.parameters.size(); ++i)

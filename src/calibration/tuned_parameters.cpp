@@ -38,7 +38,7 @@ SearchRange parse_range(std::string text, const std::string& all) {
 }
 
 SearchRange default_range(const std::string& key, const std::string& all) {
-  for (const auto method : {modeling::ModelingMethod::centerline, modeling::ModelingMethod::region_growing})
+  for (const auto method : modeling::all_methods())
     for (const TunedParameter& parameter : default_parameters(method))
       if (parameter.key == key) return parameter.range;
   throw_config_error("--parameter {}: has no range of its own; write {}=LOW:HIGH", all, key);

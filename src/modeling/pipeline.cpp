@@ -153,12 +153,31 @@ void label(const ModelingInput& input, const Background& background, FilteredClo
 
 }  // namespace
 
+const std::vector<std::string>& method_names() {
+  static const std::vector<std::string> names = {"centerline", "region_growing"};
+  return names;
+}
+
+const std::string& name_of(ModelingMethod method) { return method_names()[static_cast<std::size_t>(method)]; }
+
+std::vector<ModelingMethod> all_methods() {
+  std::vector<ModelingMethod> methods;
+  for (std::size_t i = 0; i < method_names().size(); ++i) methods.push_back(static_cast<ModelingMethod>(i));
+  return methods;
+}
+
+std::optional<ModelingMethod> method_called(const std::string& name) {
+  for (const ModelingMethod method : all_methods())
+    if (name == name_of(method)) return method;
+  return std::nullopt;
+}
+
 void describe(Fields& fields, OtherRadius& other) {
   fields.number("radius", other.radius, {1e-6, 1.0}, "m", "outer radius of more of the tubes");
 }
 
 void describe(Fields& fields, ModelingOptions& options) {
-  fields.choice("method", options.method, {"centerline", "region_growing"}, "how tubes are found");
+  fields.choice("method", options.method, method_names(), "how tubes are found");
   fields.seed("seed", options.seed, "of downsampling and of RANSAC");
   fields.number("radius", options.radius, {0.0, 1.0}, "m", "outer radius of the tubes; 0: estimated from the cloud");
   fields.list("other_radii", options.other_radii, "where tubes of several radii are told");

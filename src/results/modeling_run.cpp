@@ -17,16 +17,6 @@ std::uint64_t run_seed(std::uint64_t seed, const ModelingRun& run) {
 
 }  // namespace
 
-const char* name_of(modeling::ModelingMethod method) {
-  return method == modeling::ModelingMethod::centerline ? "centerline" : "region_growing";
-}
-
-modeling::ModelingMethod method_called(const std::string& name, const std::string& path) {
-  for (const auto method : {modeling::ModelingMethod::centerline, modeling::ModelingMethod::region_growing})
-    if (name == name_of(method)) return method;
-  throw_io_error("{}: /methods: \"{}\" is not valid; valid: \"centerline\" or \"region_growing\"", path, name);
-}
-
 ModelConfig run_config(const ModelConfig& config, const ModelingRun& run) {
   ModelConfig own = config;
   own.modeling.method = run.method;

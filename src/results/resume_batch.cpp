@@ -1,3 +1,5 @@
+#include <fmt/ranges.h>
+
 #include <filesystem>
 
 #include "core/json_reader.hpp"
@@ -26,7 +28,13 @@ ResumedBatch resume_batch(const std::vector<std::string>& results) {
   options.ratios = index.ratios;
   options.scenes = index.scenes;
   options.methods.clear();
-  for (const std::string& name : index.methods) options.methods.push_back(method_called(name, path));
+  for (const std::string& name : index.methods) {
+    const auto method = modeling::method_called(name);
+    if (!method)
+      throw_io_error("{}: /methods: \"{}\" is not valid; valid: \"{}\"", path, name,
+                     fmt::join(modeling::method_names(), "\" or \""));
+    options.methods.push_back(*method);
+  }
   const nlohmann::json json = parse_json(text, path);
   JsonPlace(json, path).at("options").fields([&](Fields& fields) { describe(fields, batch.config); });
   return batch;

@@ -1,6 +1,7 @@
 /// model_tubes: from a cloud to tubes and labels, by the steps of the paper's Section 4.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,13 @@
 namespace tubebin::modeling {
 
 enum class ModelingMethod { centerline, region_growing };
+
+/// As options, configurations and results call them, in the order of the enumerators.
+const std::vector<std::string>& method_names();
+const std::string& name_of(ModelingMethod method);
+std::vector<ModelingMethod> all_methods();
+/// Nothing where no method has the name.
+std::optional<ModelingMethod> method_called(const std::string& name);
 
 /// One more radius of a scene with several.
 struct OtherRadius {

@@ -8,10 +8,6 @@
 
 namespace tubebin::results {
 
-const char* name_of(modeling::ModelingMethod method);
-/// Throws IoError, which names `path`, where no method has the name.
-modeling::ModelingMethod method_called(const std::string& name, const std::string& path);
-
 struct ModelingRun {
   std::string scene;  ///< "A10/007"
   std::string cloud;  ///< the name of its file
