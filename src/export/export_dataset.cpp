@@ -19,7 +19,7 @@
 #include "tubebin/dataset/dataset_folder.hpp"
 #include "tubebin/dataset/manifest.hpp"
 #include "tubebin/jobs/atomic_folder.hpp"
-#include "tubebin/jobs/worker_pool.hpp"
+#include "tubebin/jobs/batch.hpp"
 #include "tubebin/results/cloud_files.hpp"
 #include "tubebin/scene/input_hashes.hpp"
 
@@ -242,29 +242,29 @@ ExportReport export_dataset(const ExportOptions& options, jobs::Progress::Style 
     const ConfinedPath path = format->scene_path(entry);
     return output.has_file(path) || output.has_folder(path);
   };
-  std::vector<std::size_t> missing;
-  for (std::size_t i = 0; i < entries.size(); ++i)
-    if (!is_complete(entries[i])) missing.push_back(i);
-  ExportReport report{.scenes = entries.size(), .complete_before = entries.size() - missing.size(), .failed = {}};
-  jobs::Progress progress(missing.size(), "scenes", progress_style);
+  ExportReport report{.scenes = entries.size(), .failed = {}};
+  const auto work = [&](std::size_t job, int) {
+    return export_one(*format, dataset, hashes, output, sources[job], entries[job]);
+  };
   std::vector<std::size_t> made;
-  const jobs::PoolEvents events{
-      .on_finished =
-          [&](const jobs::JobOutcome& outcome) {
-            progress.count_done();
-            if (outcome.succeeded) return made.push_back(outcome.job);
-            const jobs::FailedAttempt& last = outcome.failed.back();
-            report.failed.push_back(fmt::format("{}: {}", entries[outcome.job].name, last.for_people()));
-          },
-      .on_tick = [&] { progress.show(); }};
-  const jobs::PoolReport pool = jobs::run_jobs(
-      missing, {.workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit},
-      [&](std::size_t job, int) { return export_one(*format, dataset, hashes, output, sources[job], entries[job]); },
-      events);
+  const jobs::BatchReport done =
+      jobs::run_batch({.size = entries.size(),
+                       .noun = "scenes",
+                       .pool = {.workers = options.jobs, .attempts_max = 1, .attempt_time_limit = options.time_limit},
+                       .progress = progress_style,
+                       .is_done = [&](std::size_t job) { return is_complete(entries[job]); },
+                       .work = work,
+                       .on_finished =
+                           [&](const jobs::JobOutcome& outcome) {
+                             if (outcome.succeeded) return made.push_back(outcome.job);
+                             report.failed.push_back(
+                                 fmt::format("{}: {}", entries[outcome.job].name, outcome.failed.back().for_people()));
+                           }});
   for (const std::size_t i : made)
     if (!is_complete(entries[i])) report.failed.push_back(entries[i].name + ": was removed after it was made");
-  report.made = pool.succeeded;
-  report.signal = pool.signal;
+  report.complete_before = done.done_before;
+  report.made = done.made;
+  report.signal = done.signal;
   if (report.signal == 0) {
     write_atomically(output.make_entry(kIndex), format_index(sources, options.format));  // should it be gone
     std::vector<SceneEntry> complete;
