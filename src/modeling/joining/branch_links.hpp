@@ -27,6 +27,11 @@ struct BranchLink {
 /// other path's own ends, where one may go on as the other.
 std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const std::vector<Vec3>& nodes, double radius);
 
+/// Whether pieces show that the scene's tubes branch. Where they do, one in thirty shows it, and more than one: what meets
+/// another's side is as long as two diameters, longer than the bits of surface beside bends. Of chance one in three
+/// hundred does.
+bool show_branches(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends);
+
 /// The links that the evidence does not rule out (cost below `cost_limit`), cheapest first.
 std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, const std::vector<PieceEnd>& ends,
                                           const OcclusionTest& occlusion, double cost_limit);

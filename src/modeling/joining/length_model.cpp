@@ -1,0 +1,63 @@
+#include "modeling/joining/length_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace tubebin::modeling {
+namespace {
+
+/// A tube shorter than it should be can have other reasons than a missed join (a stretch too narrow to segment, a
+/// length that is not common to all), one that is longer other reasons than a wrong join (an end that is drawn out
+/// beyond a flat end): e^-10.
+constexpr double kLengthCostLimit = 10.0;
+/// A fragment that no tube explains is as likely chance as not: e^-3.
+constexpr double kFragmentCostLimit = 3.0;
+constexpr std::size_t kPossibleLengths = 4;
+
+}  // namespace
+
+/// Ends are placed to a fraction of a radius, and a bridge's true course may be a twentieth longer.
+double LengthModel::sigma(double bridged) const {
+  return std::sqrt(radius * radius / 16.0 + bridged * bridged / 400.0);
+}
+
+double LengthModel::longest() const {
+  const double length = common > 0.0 ? common : longest_likely;
+  return length + 5.0 * sigma(length / 4.0);
+}
+
+double LengthModel::cost(double length, double bridged, double room, bool is_fragment) const {
+  if (common <= 0.0) return 0.0;
+  const double missing = common - length;
+  const double unexplained = missing < 0.0 ? missing : std::max(missing - room, 0.0);
+  return std::min(0.5 * unexplained * unexplained / (sigma(bridged) * sigma(bridged)),
+                  is_fragment && missing >= 0.0 ? kFragmentCostLimit : kLengthCostLimit);
+}
+
+double LengthModel::gain(double length, double bridged) const {
+  if (common <= 0.0 || std::abs(length - common) > 2.0 * sigma(bridged)) return 0.0;
+  return std::log(common / (std::sqrt(2.0 * std::numbers::pi) * sigma(bridged)));
+}
+
+std::vector<double> LengthModel::possible_common(std::vector<double> seen) const {
+  std::sort(seen.begin(), seen.end());
+  const double tolerance = 4.0 * sigma(0.0);
+  std::vector<std::pair<double, double>> of_support;
+  for (std::size_t first = 0; first < seen.size(); ++first) {
+    std::size_t last = first;
+    double sum = 0.0;
+    while (last < seen.size() && seen[last] <= seen[first] + tolerance) sum += seen[last++];
+    of_support.emplace_back(sum, seen[first + (last - first) / 2]);
+  }
+  std::sort(of_support.begin(), of_support.end(), std::greater<>());
+  std::vector<double> lengths;
+  for (const auto& [support, length] : of_support) {
+    if (lengths.size() == kPossibleLengths) break;
+    if (std::find(lengths.begin(), lengths.end(), length) == lengths.end()) lengths.push_back(length);
+  }
+  return lengths;
+}
+
+}  // namespace tubebin::modeling
