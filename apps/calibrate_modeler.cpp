@@ -9,7 +9,7 @@
 #include "tubebin/core/version.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/jobs/worker_pool.hpp"
-#include "tubebin/results/model_dataset.hpp"
+#include "tubebin/results/ratios.hpp"
 
 namespace {
 

@@ -12,7 +12,8 @@
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/jobs/worker_pool.hpp"
 #include "tubebin/modeling/model_json.hpp"
-#include "tubebin/results/model_dataset.hpp"
+#include "tubebin/results/ratios.hpp"
+#include "tubebin/results/resume_batch.hpp"
 
 namespace {
 

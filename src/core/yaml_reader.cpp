@@ -230,8 +230,8 @@ YAML::Node parse(const std::string& text, const std::string& name) {
 /// Far above any configuration; a node takes a few hundred bytes of memory and two of a file.
 constexpr std::uint64_t kBytesMax = 1 << 20;
 
-std::string read_whole_file(const std::string& path) try {
-  return tubebin::read_file(path, kBytesMax);
+std::string read_limited(const std::string& path) try {
+  return read_file(path, kBytesMax);
 } catch (const IoError& error) {
   throw_config_error("{}", error.what());
 }
@@ -245,14 +245,16 @@ void read_root(const YAML::Node& root, const std::string& name, KeyPlaces& place
   reader.reject_unknown_keys();
 }
 
-void read_file(const std::string& path, int depth, KeyPlaces& places, const std::function<void(Fields&)>& describe) {
-  const YAML::Node root = parse(read_whole_file(path), path);
+void read_with_includes(const std::string& path, int depth, KeyPlaces& places,
+                        const std::function<void(Fields&)>& describe) {
+  const YAML::Node root = parse(read_limited(path), path);
   if (const YAML::Node include = root[kIncludeKey]) {
     const std::string place = place_of(path, include.Mark());
     if (!include.IsScalar()) throw_config_error("{}: include: expected the name of one YAML file", place);
     if (depth >= kMaxIncludeDepth)
       throw_config_error("{}: include: more than {} files deep; does a file include itself?", place, kMaxIncludeDepth);
-    read_file((std::filesystem::path(path).parent_path() / include.Scalar()).string(), depth + 1, places, describe);
+    read_with_includes((std::filesystem::path(path).parent_path() / include.Scalar()).string(), depth + 1, places,
+                       describe);
   }
   read_root(root, path, places, true, describe);
 }
@@ -275,7 +277,7 @@ void KeyPlaces::fail(const std::string& key_path, const std::string& problem) co
 
 KeyPlaces read_yaml_file(const std::string& path, const std::function<void(Fields&)>& describe) {
   KeyPlaces places;
-  read_file(path, 0, places, describe);
+  read_with_includes(path, 0, places, describe);
   return places;
 }
 

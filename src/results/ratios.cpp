@@ -1,9 +1,10 @@
+#include "tubebin/results/ratios.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "tubebin/core/error.hpp"
-#include "tubebin/results/model_dataset.hpp"
 
 namespace tubebin::results {
 namespace {

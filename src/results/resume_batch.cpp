@@ -1,3 +1,5 @@
+#include "tubebin/results/resume_batch.hpp"
+
 #include <fmt/ranges.h>
 
 #include <filesystem>
@@ -6,8 +8,6 @@
 #include "results/results_index.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/version.hpp"
-#include "tubebin/results/model_dataset.hpp"
-#include "tubebin/results/modeling_run.hpp"
 
 namespace tubebin::results {
 

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "built_scene.hpp"
+#include "modeling/built_scene.hpp"
 #include "modeling/fitting/branch_splitting.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
 #include "modeling/joining/branch_links.hpp"

@@ -38,17 +38,6 @@ struct BatchReport {
   double seconds = 0.0;
 };
 
-/// "0.1:1.0:0.1" (first, last, step) or "0.1,0.3,1". Throws ConfigError.
-std::vector<double> parse_ratios(const std::string& text);
-
-/// The call that results folders, one or those of its shards, were made with, for the runs that none of them has yet. They
-/// go into the first one. Throws IoError where it is no results folder, ConfigError where another version made it.
-struct ResumedBatch {
-  BatchOptions options;
-  ModelConfig config;
-};
-ResumedBatch resume_batch(const std::vector<std::string>& results);
-
 /// Does the runs that the results folder does not have yet. Throws IoError, and ConfigError where the folder holds
 /// results of another data set, other options or another seed.
 BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config, jobs::Progress::Style progress);
