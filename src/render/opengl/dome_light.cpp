@@ -24,21 +24,15 @@ std::vector<Eigen::Vector3f> sky_directions() {
 
 }  // namespace
 
-DomeLight::DomeLight(const Ball& ball, const std::function<void()>& draw_casters) : scene_radius_(ball.radius) {
-  ShadowMap map(kMapPixels);
-  for (const Eigen::Vector3f& to_light : sky_directions()) {
-    const Eigen::Matrix4f from_world = map_from_world(to_light, ball);
-    map.draw(from_world, draw_casters);
-    lights_.push_back({to_light, from_world, map.read()});
-  }
-}
+DomeLight::DomeLight(const Ball& ball, std::span<const Mesh> casters)
+    : scene_radius_(ball.radius), lights_(draw_depth_maps(sky_directions(), kMapPixels, ball, casters)) {}
 
 void DomeLight::shine_on(Mesh& mesh) const {
   float upward = 0.0F;
-  for (const Light& light : lights_) upward += light.to_light.z();
+  for (const DepthMap& light : lights_) upward += light.to_light.z();
   for (Vertex& vertex : mesh.vertices) {
     float sum = 0.0F;
-    for (const Light& light : lights_) {
+    for (const DepthMap& light : lights_) {
       const float facing = vertex.normal.dot(light.to_light);
       if (facing > 0.0F) sum += facing * seen_from(light, vertex);
     }
@@ -47,7 +41,7 @@ void DomeLight::shine_on(Mesh& mesh) const {
 }
 
 /// 0 or 1 at each of the four pixels around, weighted by nearness.
-float DomeLight::seen_from(const Light& light, const Vertex& vertex) const {
+float DomeLight::seen_from(const DepthMap& light, const Vertex& vertex) const {
   const float pixel_size = 2.0F * scene_radius_ / kMapPixels;
   const Eigen::Vector3f lifted = vertex.position + pixel_size * vertex.normal;
   const Eigen::Vector3f place = (light.map_from_world * lifted.homogeneous()).head<3>();

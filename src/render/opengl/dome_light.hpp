@@ -1,30 +1,22 @@
 // Light from the whole sky: what part of it each vertex gets past everything that stands in its way.
 #pragma once
 
-#include "render/mesh.hpp"
-#include "render/opengl/shadow_map.hpp"
+#include "render/opengl/depth_map.hpp"
 
 namespace tubebin::render {
 
 class DomeLight {
  public:
-  DomeLight(const Ball& ball, const std::function<void()>& draw_casters);
+  DomeLight(const Ball& ball, std::span<const Mesh> casters);
 
   /// Sets dome_light of each vertex: 1 for a free surface that faces up.
   void shine_on(Mesh& mesh) const;
 
  private:
-  /// One of the directions that stand for the sky.
-  struct Light {
-    Eigen::Vector3f to_light;
-    Eigen::Matrix4f map_from_world;
-    std::vector<float> depths;
-  };
-
-  float seen_from(const Light& light, const Vertex& vertex) const;
+  float seen_from(const DepthMap& light, const Vertex& vertex) const;
 
   float scene_radius_;
-  std::vector<Light> lights_;
+  std::vector<DepthMap> lights_;  ///< of the directions that stand for the sky
 };
 
 }  // namespace tubebin::render

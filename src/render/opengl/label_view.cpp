@@ -23,7 +23,6 @@ void set_camera(const scene::Camera& camera, const scene::Scanner& scanner, cons
   const double left = window.x - camera.width() / 2.0;
   const double top = window.y - camera.height() / 2.0;
   glMatrixMode(GL_PROJECTION);
-  glLoadIdentity();
   glFrustum(left * metres_per_pixel, (left + window.width) * metres_per_pixel,
             -(top + window.height) * metres_per_pixel, -top * metres_per_pixel, near, scanner.range_max + kFarMargin);
   Eigen::Matrix4d eye_from_world = Eigen::Matrix4d::Identity();

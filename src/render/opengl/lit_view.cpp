@@ -4,7 +4,6 @@
 #include "render/opengl/dome_light.hpp"
 #include "render/opengl/draw.hpp"
 #include "render/opengl/lit_shaders.hpp"
-#include "render/opengl/multisample_target.hpp"
 #include "render/opengl/shader_program.hpp"
 #include "render/opengl/views.hpp"
 #include "tubebin/cloud/label_colors.hpp"
@@ -15,6 +14,7 @@ namespace {
 constexpr Fineness kLitFineness = {.facets = 24, .cell = 0.015};
 constexpr Fineness kCasterFineness = {.facets = 10};
 constexpr int kSunMapPixels = 1536;
+constexpr int kSamples = 2;  // of a pixel, along each of its sides
 constexpr double kElevation = radians(52.0);
 constexpr double kAzimuth = radians(-78.0);     // of the eye, from +x towards +y
 constexpr double kFieldOfView = radians(26.0);  // vertical
@@ -95,49 +95,22 @@ Mesh bin_walls(const scene::Bin& bin, Wall kind, const View& view, const Finenes
 }
 
 /// What throws shadows, coarsely.
-class Casters {
- public:
-  Casters(const scene::Scene& scene, const View& view) {
-    meshes_.push_back(bin_walls(scene.bin, Wall::solid, view, kCasterFineness));
-    for (const scene::PlacedTube& tube : scene.tubes) meshes_.push_back(tube_mesh(tube, Vec3::Zero(), kCasterFineness));
-  }
-
-  void draw_all() const {
-    for (const Mesh& mesh : meshes_) draw(mesh);
-  }
-
- private:
-  std::vector<Mesh> meshes_;
-};
+std::vector<Mesh> shadow_casters(const scene::Scene& scene, const View& view) {
+  std::vector<Mesh> casters = {bin_walls(scene.bin, Wall::solid, view, kCasterFineness)};
+  for (const scene::PlacedTube& tube : scene.tubes) casters.push_back(tube_mesh(tube, Vec3::Zero(), kCasterFineness));
+  return casters;
+}
 
 class LitView {
  public:
-  LitView(const scene::Scene& scene, const View& view, const Eigen::AlignedBox3d& bounds,
-          const OffscreenContext& context)
-      : scene_(scene),
-        view_(view),
-        bounds_(bounds),
-        context_(context),
-        casters_(scene, view),
-        dome_(ball_around(bounds), [&] { casters_.draw_all(); }),
-        sun_map_(kSunMapPixels),
-        shading_(kLitVertexShader, kLitFragmentShader) {
-    const Eigen::Matrix4f sun_map_from_world = map_from_world(kToSun, ball_around(bounds));
-    sun_map_.draw(sun_map_from_world, [&] { casters_.draw_all(); });
-    shading_.use();
-    shading_.set("sun_map_from_world", sun_map_from_world);
-    shading_.set("shadow_margin", 2.0F * ball_around(bounds).radius / kSunMapPixels);
-    shading_.set("sun_map", 0);
-    shading_.set("to_sun", kToSun);
-    shading_.set("eye", Eigen::Vector3f(view_.eye.cast<float>()));
-    glUseProgram(0);
-  }
+  LitView(const scene::Scene& scene, const View& view, const Eigen::AlignedBox3d& bounds, const DomeLight& dome)
+      : scene_(scene), view_(view), bounds_(bounds), dome_(dome), shading_(kLitVertexShader, kLitFragmentShader) {}
 
-  void draw_all() {
-    draw_background();
-    set_camera();
-    shading_.use();
-    sun_map_.bind();
+  /// `aspect`: width by height.
+  void draw_all(const DepthMap& sun, double aspect) {
+    set_camera(aspect);
+    set_sun(sun);
+    glEnable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     const std::vector<cloud::Color> colors = cloud::label_colors(scene_.tubes.size());
@@ -149,8 +122,6 @@ class LitView {
     glEnable(GL_CULL_FACE);
     glDepthMask(GL_FALSE);
     draw_lit(bin_walls(scene_.bin, Wall::glass, view_, kLitFineness), colors[0], {.alpha = 0.22F, .highlight = 0.0F});
-    glDepthMask(GL_TRUE);
-    glDisable(GL_CULL_FACE);
   }
 
  private:
@@ -171,32 +142,13 @@ class LitView {
     draw(mesh);
   }
 
-  void draw_background() {
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    glMatrixMode(GL_PROJECTION);
-    glLoadIdentity();
-    glMatrixMode(GL_MODELVIEW);
-    glLoadIdentity();
-    glDisable(GL_DEPTH_TEST);
-    glBegin(GL_QUADS);
-    glColor3f(0.93F, 0.94F, 0.96F);
-    glVertex2f(-1.0F, -1.0F);
-    glVertex2f(1.0F, -1.0F);
-    glColor3f(0.97F, 0.975F, 0.985F);
-    glVertex2f(1.0F, 1.0F);
-    glVertex2f(-1.0F, 1.0F);
-    glEnd();
-    glEnable(GL_DEPTH_TEST);
-  }
-
-  void set_camera() {
+  void set_camera(double aspect) {
     const double radius = bounds_.diagonal().norm();
     const double distance = (view_.eye - bounds_.center()).norm();
     const double near = std::max(distance - radius, distance / 100.0);
     const double top = near * std::tan(kFieldOfView / 2.0);
-    const double right = top * context_.width() / context_.height();
+    const double right = top * aspect;
     glMatrixMode(GL_PROJECTION);
-    glLoadIdentity();
     glFrustum(-right, right, -top, top, near, distance + 4.0 * radius);
     Eigen::Matrix4d eye_from_world = Eigen::Matrix4d::Identity();
     eye_from_world.row(0).head<3>() = view_.right.transpose();
@@ -205,6 +157,22 @@ class LitView {
     eye_from_world.col(3).head<3>() = -eye_from_world.topLeftCorner<3, 3>() * view_.eye;
     glMatrixMode(GL_MODELVIEW);
     glLoadMatrixd(eye_from_world.data());
+  }
+
+  void set_sun(const DepthMap& sun) {
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, kSunMapPixels, kSunMapPixels, 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                 sun.depths.data());
+    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+      glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+      glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_R_TO_TEXTURE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+    shading_.set("sun_map", 0);
+    shading_.set("sun_map_from_world", sun.map_from_world);
+    shading_.set("shadow_margin", 2.0F * ball_around(bounds_).radius / kSunMapPixels);
+    shading_.set("to_sun", sun.to_light);
+    shading_.set("eye", Eigen::Vector3f(view_.eye.cast<float>()));
   }
 
   /// A bright table that fades into the background.
@@ -221,25 +189,36 @@ class LitView {
   }
 
   const scene::Scene& scene_;
-  View view_;
-  Eigen::AlignedBox3d bounds_;
-  const OffscreenContext& context_;
-  Casters casters_;
-  DomeLight dome_;
-  ShadowMap sun_map_;
+  const View& view_;
+  const Eigen::AlignedBox3d& bounds_;
+  const DomeLight& dome_;
   ShaderProgram shading_;
 };
+
+void draw_background() {
+  glBegin(GL_QUADS);
+  glColor3f(0.93F, 0.94F, 0.96F);
+  glVertex2f(-1.0F, -1.0F);
+  glVertex2f(1.0F, -1.0F);
+  glColor3f(0.97F, 0.975F, 0.985F);
+  glVertex2f(1.0F, 1.0F);
+  glVertex2f(-1.0F, 1.0F);
+  glEnd();
+}
 
 }  // namespace
 
 Image draw_lit_view(const scene::Scene& scene, int width, int height) {
   const Eigen::AlignedBox3d bounds = scene_bounds(scene);
-  const View view = view_of(bounds, static_cast<double>(width) / height);
-  const OffscreenContext context(width, height);
-  LitView lit_view(scene, view, bounds, context);
-  const MultisampleTarget target(context);
-  lit_view.draw_all();
-  target.resolve();
+  const double aspect = static_cast<double>(width) / height;
+  const View view = view_of(bounds, aspect);
+  const std::vector<Mesh> casters = shadow_casters(scene, view);
+  const DomeLight dome(ball_around(bounds), casters);
+  const DepthMap sun = draw_depth_maps({&kToSun, 1}, kSunMapPixels, ball_around(bounds), casters).front();
+  const OffscreenContext context(width, height, kSamples);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  draw_background();
+  LitView(scene, view, bounds, dome).draw_all(sun, aspect);
   return context.read();
 }
 

@@ -14,21 +14,24 @@ namespace tubebin::render {
 /// where there can be none of that size. Needs load_opengl().
 class OffscreenContext {
  public:
-  OffscreenContext(int width, int height);
+  /// Each pixel is the mean of `samples` by `samples`.
+  OffscreenContext(int width, int height, int samples = 1);
   ~OffscreenContext();
   OffscreenContext(const OffscreenContext&) = delete;
   OffscreenContext& operator=(const OffscreenContext&) = delete;
 
-  int width() const { return width_; }
-  int height() const { return height_; }
-
   /// What has been drawn.
   Image read() const;
+  /// Depths in [0, 1] of all samples, row by row from the bottom.
+  std::vector<float> read_depths() const;
 
  private:
+  std::uint8_t mean(int column, int row, std::size_t channel) const;
+
   int width_;
   int height_;
-  std::vector<std::uint8_t> rgba_;  ///< from the top
+  int samples_;
+  std::vector<std::uint8_t> rgba_;  ///< of all samples, from the top
   void* context_;                   ///< an OSMesaContext
 };
 

@@ -33,8 +33,7 @@ ShaderProgram::ShaderProgram(const char* vertex_source, const char* fragment_sou
   GLint linked = GL_FALSE;
   glGetProgramiv(program_, GL_LINK_STATUS, &linked);
   if (linked != GL_TRUE) throw std::runtime_error("OpenGL can't link a shader of the preview");
+  glUseProgram(program_);
 }
-
-ShaderProgram::~ShaderProgram() { glDeleteProgram(program_); }
 
 }  // namespace tubebin::render

@@ -1,4 +1,4 @@
-// A compiled pair of shaders.
+// A compiled pair of shaders, in use once it is made. It ends with its context.
 #pragma once
 
 #include "render/opengl/offscreen_context.hpp"
@@ -9,11 +9,7 @@ class ShaderProgram {
  public:
   /// Throws std::runtime_error with the compiler's message where a source is not accepted.
   ShaderProgram(const char* vertex_source, const char* fragment_source);
-  ~ShaderProgram();
-  ShaderProgram(const ShaderProgram&) = delete;
-  ShaderProgram& operator=(const ShaderProgram&) = delete;
 
-  void use() const { glUseProgram(program_); }
   void set(const char* uniform, int value) const { glUniform1i(place(uniform), value); }
   void set(const char* uniform, float value) const { glUniform1f(place(uniform), value); }
   void set(const char* uniform, const Eigen::Vector3f& value) const { glUniform3fv(place(uniform), 1, value.data()); }
