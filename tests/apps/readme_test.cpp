@@ -1,9 +1,12 @@
-// README's table of results copies the reproduction of the paper; this holds the copies to their source.
+// README's table of results copies the reproduction of the paper, and its claims are tests' names: this holds them to both.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -89,6 +92,48 @@ TEST(Readme, CopiesTheSecondsOfAScene) {
   const std::string measured = markdown_row("docs/reproduction.md", "10", "| tubes | A | A paper |").at(1);
   EXPECT_EQ(cells.at(2), measured);
   EXPECT_EQ(cells.at(3), measured);
+}
+
+/// Every "Suite.Name" in tests/.
+std::set<std::string> names_of_tests() {
+  static const std::regex kTest(R"(^TEST(?:_F|_P)?\((\w+), (\w+)\))");
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kRoot + "/tests")) {
+    if (entry.path().extension() != ".cpp") continue;
+    for (const std::string& line : lines_of(std::filesystem::relative(entry.path(), kRoot)))
+      if (std::smatch match; std::regex_search(line, match, kTest)) names.insert(match.str(1) + "." + match.str(2));
+  }
+  return names;
+}
+
+/// README's lines that promise something of every case, and its list of promises, item by item.
+std::vector<std::string> claims() {
+  static const std::regex kOfEveryCase(R"(\b(any|never|nothing|always)\b)", std::regex::icase);
+  std::vector<std::string> claims;
+  bool is_code = false, is_item = false;
+  for (const std::string& line : lines_of("README.md")) {
+    is_code = is_code != line.starts_with("```");
+    is_item = line.starts_with("- ") || (is_item && line.starts_with("  "));
+    if (line.starts_with("- ")) claims.push_back(line);
+    else if (is_item) claims.back() += line;
+    if (!is_code && std::regex_search(line, kOfEveryCase)) claims.push_back(line);
+  }
+  return claims;
+}
+
+TEST(Readme, NamesTheTestOfEachClaim) {
+  static const std::regex kNames("<!-- test: ([^>]*) -->");
+  const std::set<std::string> tests = names_of_tests();
+  EXPECT_GE(claims().size(), 10U);
+  for (const std::string& claim : claims()) {
+    std::smatch match;
+    if (!std::regex_search(claim, match, kNames)) {
+      ADD_FAILURE() << "README.md: names no test, as in <!-- test: Suite.Name --> at the end of the line: " << claim;
+      continue;
+    }
+    for (const std::string& name : split(match.str(1), ' '))
+      EXPECT_TRUE(tests.contains(name)) << "README.md: there is no test " << name << ": " << claim;
+  }
 }
 
 }  // namespace
