@@ -318,6 +318,45 @@ def draw_modeling(work):
                 columns=2), "modeling.png")
 
 
+def from_the_front(points):
+    """World coordinates (metres) as TopView wants them, to look at the bin from in front, a little aside and above."""
+    aside, down = np.radians(25), np.radians(24)
+    x, y, z = np.moveaxis(np.asarray(points, float), -1, 0)
+    x, y = x * np.cos(aside) + y * np.sin(aside), y * np.cos(aside) - x * np.sin(aside)
+    return np.stack([x, z * np.cos(down) + y * np.sin(down), z * np.sin(down) - y * np.cos(down)], axis=-1)
+
+
+def bin_outline(bin_, step=0.0005):
+    """Points (metres) of the bin's floor and of its edges."""
+    x, y = (np.arange(-bin_[side] / 2, bin_[side] / 2, step) for side in ("length", "width"))
+    floor = np.array([(u, v, 0.0) for u in x for v in y])
+    on_edge = (abs(floor[:, 0]) > x[-1] - step / 2) | (abs(floor[:, 1]) > y[-1] - step / 2)
+    corners = np.array([(u, v, z) for u in (x[0], x[-1]) for v in (y[0], y[-1]) for z in np.arange(0, bin_["height"], step)])
+    return floor, np.concatenate([floor[on_edge], floor[on_edge] + [0.0, 0.0, bin_["height"]], corners])
+
+
+def draw_drop_stages(work):
+    """A scene's tubes when they start, falling and at rest."""
+    program = work.bin_dir.parent / "bench/drop_stages"
+    stages = json.loads(subprocess.run([program, ROOT / "config/set_a.yaml", "10", "0.3"], check=True,
+                                       capture_output=True).stdout)
+    scene = read_json(work.dataset() / SCENE / "scene.json")
+    floor, edges = map(from_the_front, bin_outline(scene["bin"]))
+    nodes = from_the_front([node for stage in stages for tube in stage for node in tube["nodes"]])
+    x, y = extent(np.concatenate([nodes, edges]), 0.02)
+    pictures = []
+    for stage in stages:
+        view = TopView(x, y, 330)
+        view.splat(floor, (236, 236, 236))
+        view.splat(edges, (110, 110, 110), 2)
+        for tube, color in zip(stage, scene_colors(scene).values()):
+            ends = from_the_front(tube["nodes"])
+            for k, (start, end) in enumerate(zip(ends, ends[1:])):
+                view.cylinder(start, end, tube["radius"], color, joint=k > 0)
+        pictures.append(view.picture())
+    save(beside(pictures, ["spawned above the rim", "falling, 0.3 s later", "at rest"]), "drop_stages.png")
+
+
 def effect_configs(work):
     """Name and scanner.effects of each picture, with the values of scanner_zivid_like.yaml."""
     work.run("zivid", "generate_dataset", ROOT / "config/scanner_zivid_like.yaml", "--output", "zivid", "--tubes", "10",
