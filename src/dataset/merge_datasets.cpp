@@ -8,7 +8,7 @@
 #include <optional>
 #include <sstream>
 
-#include "dataset/scene_check.hpp"
+#include "dataset/verify_scene.hpp"
 #include "tubebin/core/shell_word.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
 #include "tubebin/jobs/atomic_folder.hpp"

@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "dataset/verify_scene.hpp"
 #include "tubebin/jobs/batch.hpp"
 
 namespace tubebin::dataset {

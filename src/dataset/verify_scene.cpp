@@ -1,14 +1,14 @@
+#include "dataset/verify_scene.hpp"
+
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
 #include <set>
 
-#include "dataset/scene_check.hpp"
 #include "dataset/surface_distance.hpp"
 #include "tubebin/core/file_record.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
-#include "tubebin/dataset/verify_dataset.hpp"
 #include "tubebin/scan/scanner.hpp"
 #include "tubebin/scene/scene_json.hpp"
 #include "tubebin/scene/tubes_txt.hpp"

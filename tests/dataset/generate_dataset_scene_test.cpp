@@ -1,9 +1,10 @@
 // The program as a user runs it, on a quick configuration.
 #include <gmock/gmock.h>
 
+#include "dataset/verify_scene.hpp"
 #include "support/program.hpp"
+#include "tubebin/dataset/dataset_folder.hpp"
 #include "tubebin/dataset/manifest.hpp"
-#include "tubebin/dataset/verify_dataset.hpp"
 #include "tubebin/render/preview.hpp"
 #include "tubebin/scene/scene_json.hpp"
 #include "tubebin/scene/tubes_txt.hpp"

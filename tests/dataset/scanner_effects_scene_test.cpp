@@ -2,9 +2,10 @@
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
 
+#include "dataset/verify_scene.hpp"
 #include "support/program.hpp"
+#include "tubebin/dataset/dataset_folder.hpp"
 #include "tubebin/dataset/manifest.hpp"
-#include "tubebin/dataset/verify_dataset.hpp"
 #include "tubebin/scene/scene_json.hpp"
 
 namespace tubebin::testing {

@@ -7,15 +7,8 @@
 #include "tubebin/dataset/dataset_folder.hpp"
 #include "tubebin/dataset/scene_id.hpp"
 #include "tubebin/jobs/progress.hpp"
-#include "tubebin/scene/dataset_files.hpp"
 
 namespace tubebin::dataset {
-
-/// What is wrong with a recorded scene, one sentence each; empty for a sound one. Checks the files' sizes and hashes;
-/// that scene.json, tubes.txt and the cloud can be read and agree with each other; one colour a label, all different;
-/// that every point lies on the surface that its label names; contacts within the limits, every tube held.
-std::vector<std::string> verify_scene(const scene::DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
-                                      const ManifestRecord& record);
 
 struct VerificationReport {
   int signal = 0;  ///< that ended the check early; 0: none
