@@ -36,7 +36,7 @@ class TriangleScene {
       : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_.get())) {
     const Vec3 origin = scene.scanner.world_from_scanner().translation();
     render::Mesh bin;
-    for (const scene::Box& box : scene::bin_boxes(scene.bin)) render::add_box(box, origin, {}, bin);
+    for (const scene::BinPart& part : scene::bin_parts(scene.bin)) render::add_part(part, origin, {}, bin);
     attach(bin);
     for (const scene::PlacedTube& tube : scene.tubes) attach(render::tube_mesh(tube, origin, {}));
     rtcCommitScene(scene_.get());

@@ -49,8 +49,8 @@ void check_version(const DatasetConfig& config, const KeyPlaces& places) {
 void check_scanner(const scene::Scanner& scanner, const scene::Bin& bin, const KeyPlaces& places,
                    const std::string& prefix) {
   check(scanner, places, prefix);
-  for (const scene::Box& box : bin_boxes(bin))
-    if (box.contains(scanner.position))
+  for (const scene::BinPart& part : scene::bin_parts(bin))
+    if (part.box.contains(part.world_from_part.inverse() * scanner.position))
       places.fail(prefix + ".position",
                   fmt::format("[{}, {}, {}] m is inside the bin's floor or a wall of it; valid: a place in the open",
                               scanner.position.x(), scanner.position.y(), scanner.position.z()));
@@ -112,7 +112,8 @@ void describe(Fields& fields, DatasetConfig& config) {
   if (config.kinds.empty())
     fields.group("tube", "shape of the tubes (paper, Algorithms 1 to 3)",
                  [&](Fields& inner) { describe(inner, config.tube); });
-  fields.group("bin", "inner size of the bin", [&](Fields& inner) { describe(inner, config.bin); });
+  fields.group("bin", "the bin, an open box where its walls are not said to be otherwise",
+               [&](Fields& inner) { describe(inner, config.bin); });
   fields.group("physics", "the drop and the checks of its result",
                [&](Fields& inner) { describe(inner, config.physics); });
   describe_scanners(fields, config);
@@ -143,6 +144,7 @@ void check_of_any_version(const DatasetConfig& config, const KeyPlaces& places) 
   check_scene_count(config, places);
   if (config.kinds.empty()) check(config.tube, places, "tube");
   check(config.kinds, config.tubes, places);
+  check(config.bin, places, "bin");
   check(config.physics, places, "physics");
   if (config.scanners.empty()) check_scanner(config.scanner, config.bin, places, "scanner");
   for (std::size_t i = 0; i < config.scanners.size(); ++i)

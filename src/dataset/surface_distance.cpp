@@ -53,8 +53,10 @@ double BodySurface::distance(const Vec3& point) const {
     nearest = std::min(nearest, std::abs(from_center - sphere.radius));
     if (sphere.bore_radius > 0.0) nearest = std::min(nearest, std::abs(from_center - sphere.bore_radius));
   }
-  for (const scene::Box& box : boxes_)
-    nearest = std::min(nearest, distance_from_bounds(Vec3((point - box.center()).cwiseAbs() - box.sizes() / 2.0)));
+  for (const auto& [box, world_from_part, is_turned] : parts_) {
+    const Vec3 p = world_from_part.inverse() * point;
+    nearest = std::min(nearest, distance_from_bounds(Vec3((p - box.center()).cwiseAbs() - box.sizes() / 2.0)));
+  }
   return nearest;
 }
 

@@ -8,11 +8,11 @@
 
 namespace tubebin::dataset {
 
-/// The surfaces of one body: a tube's cylinders and joint spheres, outside and in its bore, or the bin's boxes.
+/// The surfaces of one body: a tube's cylinders and joint spheres, outside and in its bore, or the bin's parts.
 class BodySurface {
  public:
   explicit BodySurface(const scene::PlacedTube& tube);
-  explicit BodySurface(const scene::Bin& bin) : boxes_(scene::bin_boxes(bin)) {}
+  explicit BodySurface(const scene::Bin& bin) : parts_(scene::bin_parts(bin)) {}
 
   /// Metres to the nearest of the body's surfaces, from whichever side.
   double distance(const Vec3& point) const;
@@ -32,7 +32,7 @@ class BodySurface {
   };
   std::vector<CappedCylinder> cylinders_;
   std::vector<Sphere> spheres_;
-  std::vector<scene::Box> boxes_;
+  std::vector<scene::BinPart> parts_;
 };
 
 }  // namespace tubebin::dataset

@@ -28,9 +28,9 @@ Pixel pixel_on_ray(const cloud::Point& point, const scene::Camera& camera) {
 scene::PixelWindow bin_window(const scene::Scene& scene, const scene::Camera& camera) {
   const Pose scanner_from_world = camera.world_from_scanner().inverse();
   Eigen::AlignedBox2d bounds;
-  for (const scene::Box& box : scene::bin_boxes(scene.bin))
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3 p_in_scanner = scanner_from_world * box.corner(static_cast<scene::Box::CornerType>(corner));
+  for (const scene::BinPart& part : scene::bin_parts(scene.bin))
+    for (const Vec3& corner : part.corners_in_world()) {
+      const Vec3 p_in_scanner = scanner_from_world * corner;
       if (p_in_scanner.z() < scene.scanner.range_min) return {0, 0, camera.width(), camera.height()};
       bounds.extend(camera.project(p_in_scanner));
     }

@@ -155,16 +155,19 @@ class WorldWriter {
   }
 
   void write_bin() {
-    // In the order of bin_boxes().
+    // In the order of bin_parts().
     static constexpr const char* kNames[] = {"bottom", "west_wall", "east_wall", "south_wall", "north_wall"};
-    const std::vector<scene::Box> boxes = scene::bin_boxes(scene_.bin);
+    const std::vector<scene::BinPart> parts = scene::bin_parts(scene_.bin);
     out_.element("model", named("bin"), [&] {
       out_.text("static", "1");
-      for (std::size_t i = 0; i < boxes.size(); ++i)
-        out_.element("link", named(kNames[i]), [&] {
-          write_solid(kNames[i], at(boxes[i].center()), physics_.friction_bin, colors_[0],
-                      [&] { out_.element("box", [&] { out_.text("size", triple(boxes[i].sizes())); }); });
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::string name = i < std::size(kNames) ? kNames[i] : fmt::format("part_{}", i + 1);
+        const Pose pose = parts[i].world_from_part * at(parts[i].box.center());
+        out_.element("link", named(name), [&] {
+          write_solid(name, pose, physics_.friction_bin, colors_[0],
+                      [&] { out_.element("box", [&] { out_.text("size", triple(parts[i].box.sizes())); }); });
         });
+      }
     });
   }
 

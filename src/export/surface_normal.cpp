@@ -20,7 +20,7 @@ struct Nearest {
 
 }  // namespace
 
-SurfaceNormals::SurfaceNormals(const scene::Scene& scene) : bin_(scene.bin) {
+SurfaceNormals::SurfaceNormals(const scene::Scene& scene) : bin_(scene::bin_parts(scene.bin)) {
   for (const scene::PlacedTube& tube : scene.tubes) tubes_.push_back(tube.solids_in_world());
 }
 
@@ -52,17 +52,18 @@ Vec3 SurfaceNormals::at_tube(const tube::TubeSolids& tube, const Vec3& point) co
   return nearest.normal;
 }
 
+/// Of the part that is nearest, the face that the point is farthest beyond. Where it is level with several parts, as the
+/// floor at a wall's foot, the first.
 Vec3 SurfaceNormals::at_bin(const Vec3& point) const {
-  const double half_length = bin_.length / 2.0, half_width = bin_.width / 2.0;
-  const double outside = std::max(std::abs(point.x()) - half_length, std::abs(point.y()) - half_width);
   Nearest nearest;
-  if (outside <= 0.0) nearest.offer(point.z(), Vec3::UnitZ());
-  else nearest.offer(point.z() - bin_.height, Vec3::UnitZ());
-  for (const double side : {-1.0, 1.0}) {
-    nearest.offer(point.x() - side * half_length, Vec3(-side, 0, 0));
-    nearest.offer(point.y() - side * half_width, Vec3(0, -side, 0));
-    nearest.offer(point.x() - side * (half_length + bin_.wall_thickness), Vec3(side, 0, 0));
-    nearest.offer(point.y() - side * (half_width + bin_.wall_thickness), Vec3(0, side, 0));
+  for (const auto& [box, world_from_part, is_turned] : bin_) {
+    const Vec3 from_center = world_from_part.inverse() * point - box.center();
+    const Vec3 beyond = from_center.cwiseAbs() - box.sizes() / 2.0;
+    Eigen::Index axis = 0;
+    const double farthest = beyond.maxCoeff(&axis);
+    const double outside = beyond.cwiseMax(0.0).norm();
+    nearest.offer(outside > 0.0 ? outside : farthest,
+                  world_from_part.linear() * Vec3(Vec3::Unit(axis) * (from_center[axis] < 0.0 ? -1.0 : 1.0)));
   }
   return nearest.normal;
 }

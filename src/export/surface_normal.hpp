@@ -19,7 +19,7 @@ class SurfaceNormals {
   Vec3 at_tube(const tube::TubeSolids& tube, const Vec3& point) const;
   Vec3 at_bin(const Vec3& point) const;
 
-  scene::Bin bin_;
+  std::vector<scene::BinPart> bin_;
   std::vector<tube::TubeSolids> tubes_;
 };
 

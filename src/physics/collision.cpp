@@ -287,6 +287,42 @@ std::optional<SegmentPair> closest_within(const CollisionCylinder& first, const 
   return closest;
 }
 
+/// The touches of a box with the parts of a tube, in one frame.
+void collide_box(const scene::Box& box, const std::vector<Ball>& joints,
+                 const std::vector<CollisionCylinder>& cylinders, double depth_min, std::vector<Touch>& out) {
+  const scene::Box reach = inflated(box, -std::min(depth_min, 0.0));
+  for (const Ball& joint : joints)
+    if (const auto touch = touch_box_with_ball(box, joint.center, joint.radius, depth_min)) out.push_back(*touch);
+  for (const CollisionCylinder& cylinder : cylinders) {
+    if (!reach.intersects(cylinder.bounds)) continue;
+    if (cylinder.flat_a) add_rim_touches(box, cylinder, true, depth_min, out);
+    if (cylinder.flat_b) add_rim_touches(box, cylinder, false, depth_min, out);
+    add_edge_touch(box, cylinder, depth_min, out);
+  }
+}
+
+/// The same in the box's frame, of what of the tube is near.
+void collide_turned(const CollisionBox& box, const CollisionTube& tube, double depth_min, std::vector<Touch>& out) {
+  const scene::Box reach = inflated(box.bounds, -std::min(depth_min, 0.0));
+  const Pose part_from_world = box.part.world_from_part.inverse();
+  std::vector<Ball> joints;
+  for (const Ball& joint : tube.joints)
+    if (reach.squaredExteriorDistance(joint.center) <= joint.radius * joint.radius)
+      joints.push_back({part_from_world * joint.center, joint.radius});
+  std::vector<CollisionCylinder> cylinders;
+  for (const CollisionCylinder& cylinder : tube.cylinders) {
+    if (!reach.intersects(cylinder.bounds)) continue;
+    cylinders.push_back(cylinder);
+    cylinders.back().place({part_from_world * cylinder.axis.a, part_from_world * cylinder.axis.b});
+  }
+  const std::size_t begin = out.size();
+  collide_box(box.part.box, joints, cylinders, depth_min, out);
+  for (std::size_t i = begin; i < out.size(); ++i) {
+    out[i].position = box.part.world_from_part * out[i].position;
+    out[i].normal = box.part.world_from_part.linear() * out[i].normal;
+  }
+}
+
 }  // namespace
 
 void find_near_cylinders(const CollisionTube& first, const CollisionTube& second, double reach,
@@ -328,19 +364,14 @@ void collide(const CollisionTube& first, const CollisionTube& second, const std:
   keep_deepest_of_each_spot(begin, 0.5 * std::min(first.radius, second.radius), out);
 }
 
-void collide(const std::vector<scene::Box>& bin, const CollisionTube& tube, double depth_min, std::vector<Touch>& out) {
-  for (const scene::Box& box : bin) {
-    const scene::Box reach = inflated(box, -std::min(depth_min, 0.0));
-    if (!reach.intersects(tube.bounds)) continue;
+void collide(const std::vector<CollisionBox>& bin, const CollisionTube& tube, double depth_min,
+             std::vector<Touch>& out) {
+  const double gap = -std::min(depth_min, 0.0);
+  for (const CollisionBox& box : bin) {
+    if (!inflated(box.bounds, gap).intersects(tube.bounds)) continue;
     const std::size_t begin = out.size();
-    for (const Ball& joint : tube.joints)
-      if (const auto touch = touch_box_with_ball(box, joint.center, joint.radius, depth_min)) out.push_back(*touch);
-    for (const CollisionCylinder& cylinder : tube.cylinders) {
-      if (!reach.intersects(cylinder.bounds)) continue;
-      if (cylinder.flat_a) add_rim_touches(box, cylinder, true, depth_min, out);
-      if (cylinder.flat_b) add_rim_touches(box, cylinder, false, depth_min, out);
-      add_edge_touch(box, cylinder, depth_min, out);
-    }
+    if (box.part.is_turned) collide_turned(box, tube, depth_min, out);
+    else collide_box(box.part.box, tube.joints, tube.cylinders, depth_min, out);
     keep_deepest_of_each_spot(begin, 0.5 * tube.radius, out);
   }
 }

@@ -26,6 +26,8 @@ struct CollisionCylinder {
   bool flat_b = false;
   scene::Box bounds;
 
+  /// To where its axis is.
+  void place(const Segment& to);
   SolidCylinder solid(double eroded_by = 0.0) const;
 };
 
@@ -57,9 +59,17 @@ struct Touch {
   double depth = 0.0;  ///< metres of interpenetration; negative: a gap
 };
 
-/// The bin as it collides: bin_boxes() with the ground below the floor, so that nothing falls through. Walls reach down into
+/// A solid box of the bin.
+struct CollisionBox {
+  explicit CollisionBox(const scene::BinPart& of) : part(of), bounds(of.bounds_in_world()) {}
+
+  scene::BinPart part;
+  scene::Box bounds;  ///< world frame
+};
+
+/// The bin as it collides: bin_parts() with the ground below the floor, so that nothing falls through. Walls reach down into
 /// it and overlap at the corners, so that the shortest way out of one never leads into another.
-std::vector<scene::Box> collision_boxes(const scene::Bin& bin);
+std::vector<CollisionBox> collision_boxes(const scene::Bin& bin);
 
 /// Indices of a cylinder of one tube and of a cylinder of another.
 struct CylinderPair {
@@ -78,7 +88,8 @@ void collide(const CollisionTube& first, const CollisionTube& second, const std:
              double depth_min, std::vector<Touch>& out);
 
 /// Appends the touches of the bin (first) and a tube (second) with depth >= `depth_min`.
-void collide(const std::vector<scene::Box>& bin, const CollisionTube& tube, double depth_min, std::vector<Touch>& out);
+void collide(const std::vector<CollisionBox>& bin, const CollisionTube& tube, double depth_min,
+             std::vector<Touch>& out);
 
 /// All touches of a scene, labelled. `depth_min` as above.
 std::vector<scene::Contact> find_contacts(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin,

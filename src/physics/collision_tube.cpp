@@ -8,6 +8,15 @@ SolidCylinder CollisionCylinder::solid(double eroded_by) const {
   return {axis.a + from * direction, direction, std::max(to - from, 0.0), std::max(radius - eroded_by, 0.0)};
 }
 
+void CollisionCylinder::place(const Segment& to) {
+  axis = to;
+  direction = axis.b - axis.a;
+  length = direction.norm();
+  direction /= length;
+  const Vec3 margin = Vec3::Constant(radius);
+  bounds = scene::Box(axis.a.cwiseMin(axis.b) - margin, axis.a.cwiseMax(axis.b) + margin);
+}
+
 CollisionTube::CollisionTube(const scene::PlacedTube& tube) : solids_(tube::tube_solids(tube.tube, tube.tube.nodes)) {
   nodes.resize(tube.tube.nodes.size());
   radius = tube.tube.radius_max();
@@ -30,35 +39,30 @@ void CollisionTube::follow(const scene::PlacedTube& tube) {
     bounds.extend(scene::Box(joints[i].center - margin, joints[i].center + margin));
   }
   for (std::size_t i = 0; i < cylinders.size(); ++i) {
-    CollisionCylinder& cylinder = cylinders[i];
-    cylinder.axis = {nodes[static_cast<std::size_t>(solids_.cylinders[i].node_a)],
-                     nodes[static_cast<std::size_t>(solids_.cylinders[i].node_b)]};
-    cylinder.direction = cylinder.axis.b - cylinder.axis.a;
-    cylinder.length = cylinder.direction.norm();
-    cylinder.direction /= cylinder.length;
-    const Vec3 margin = Vec3::Constant(cylinder.radius);
-    cylinder.bounds = scene::Box(cylinder.axis.a.cwiseMin(cylinder.axis.b) - margin,
-                                 cylinder.axis.a.cwiseMax(cylinder.axis.b) + margin);
-    bounds.extend(cylinder.bounds);
+    cylinders[i].place({nodes[static_cast<std::size_t>(solids_.cylinders[i].node_a)],
+                        nodes[static_cast<std::size_t>(solids_.cylinders[i].node_b)]});
+    bounds.extend(cylinders[i].bounds);
   }
 }
 
-std::vector<scene::Box> collision_boxes(const scene::Bin& bin) {
+std::vector<CollisionBox> collision_boxes(const scene::Bin& bin) {
   constexpr double kGroundDepth = 1.0;  // metres; far beyond what a tube covers in a step
-  std::vector<scene::Box> boxes = scene::bin_boxes(bin);
-  for (scene::Box& box : boxes) box.min().z() -= kGroundDepth;
-  for (const std::size_t wall : {3u, 4u}) {  // at -y and +y, between the others
-    boxes[wall].min().x() -= bin.wall_thickness;
-    boxes[wall].max().x() += bin.wall_thickness;
-  }
-  return boxes;
+  std::vector<scene::BinPart> parts = scene::bin_parts(bin);
+  const std::size_t standing = scene::inner_faces(bin).size();  // floor, walls and corners; then the rim
+  for (std::size_t i = 0; i < standing; ++i) parts[i].box.min().z() -= kGroundDepth;
+  if (bin.is_box())
+    for (const std::size_t wall : {3u, 4u}) {  // at -y and +y, between the others
+      parts[wall].box.min().x() -= bin.wall_thickness;
+      parts[wall].box.max().x() += bin.wall_thickness;
+    }
+  return {parts.begin(), parts.end()};
 }
 
 std::vector<scene::Contact> find_contacts(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin,
                                           double depth_min) {
   std::vector<CollisionTube> shapes;
   for (const scene::PlacedTube& tube : tubes) shapes.emplace_back(tube);
-  const std::vector<scene::Box> boxes = collision_boxes(bin);
+  const std::vector<CollisionBox> boxes = collision_boxes(bin);
   std::vector<scene::Contact> contacts;
   std::vector<Touch> touches;
   const auto append = [&](std::size_t label_a, std::size_t label_b) {

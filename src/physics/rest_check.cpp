@@ -12,11 +12,13 @@ bool is_slow(const RigidWorld& world, const PhysicsOptions& options) {
 }
 
 std::optional<std::size_t> find_outside(const RigidWorld& world, const scene::Bin& bin) {
+  const std::vector<scene::InnerFace> faces = scene::inner_faces(bin);
   for (std::size_t i = 0; i < world.size(); ++i) {
-    const Vec3 center = world.center_of_mass(i);
-    const bool inside =
-        std::abs(center.x()) < bin.length / 2.0 && std::abs(center.y()) < bin.width / 2.0 && center.z() > 0.0;
-    if (!inside) return i;
+    Vec3 center = world.center_of_mass(i);
+    center.z() = std::min(center.z(), bin.height);
+    const bool outside =
+        std::ranges::any_of(faces, [&](const scene::InnerFace& face) { return face.depth_inside(center) <= 0.0; });
+    if (outside) return i;
   }
   return std::nullopt;
 }

@@ -39,7 +39,7 @@ struct RigidWorld::Impl {
   dWorldID world = nullptr;
   PhysicsOptions options;
   scene::Bin bin;
-  std::vector<scene::Box> boxes;  ///< of the bin, with its guards while they stand
+  std::vector<CollisionBox> boxes;  ///< of the bin, with its guards while they stand
   bool guards_stand = false;
   std::vector<scene::PlacedTube> tubes;  ///< poses are the bodies'
   std::vector<dBodyID> bodies;

@@ -65,17 +65,18 @@ class MeshBuilder {
   }
 
   /// The face of a box across `axis`, at its upper or lower side.
-  void add_face(const scene::Box& box, int axis, bool upper) {
+  void add_face(const scene::BinPart& part, int axis, bool upper) {
+    const scene::Box& box = part.box;
     const int j = (axis + 1) % 3, k = (axis + 2) % 3;
     const Vec3 size = box.sizes();
     const int columns = steps_over(size[j]), rows = steps_over(size[k]);
-    const Vec3 normal = Vec3::Unit(axis) * (upper ? 1.0 : -1.0);
+    const Vec3 normal = part.world_from_part.linear() * Vec3::Unit(axis) * (upper ? 1.0 : -1.0);
     add_patch(columns, rows, [&](int column, int row) -> Vertex {
       Vec3 position = upper ? box.max() : box.min();
       // Counter-clockwise as seen from outside.
       position[j] = box.min()[j] + size[j] * (upper ? column : columns - column) / columns;
       position[k] = box.min()[k] + size[k] * row / rows;
-      return vertex(position, normal);
+      return vertex(part.world_from_part * position, normal);
     });
   }
 
@@ -228,10 +229,10 @@ Mesh tube_mesh(const scene::PlacedTube& placed, const Vec3& origin, const Finene
   return mesh;
 }
 
-void add_box(const scene::Box& box, const Vec3& origin, const Fineness& fineness, Mesh& mesh) {
+void add_part(const scene::BinPart& part, const Vec3& origin, const Fineness& fineness, Mesh& mesh) {
   MeshBuilder builder(mesh, origin, fineness);
   for (int axis = 0; axis < 3; ++axis)
-    for (const bool upper : {false, true}) builder.add_face(box, axis, upper);
+    for (const bool upper : {false, true}) builder.add_face(part, axis, upper);
 }
 
 }  // namespace tubebin::render

@@ -31,7 +31,7 @@ struct Fineness {
 /// Cylinders with flat caps and spheres at the joints, around `origin` in world axes. A hollow tube's free ends are open.
 Mesh tube_mesh(const scene::PlacedTube& tube, const Vec3& origin, const Fineness& fineness);
 
-/// A box's faces, around `origin` in world axes.
-void add_box(const scene::Box& box, const Vec3& origin, const Fineness& fineness, Mesh& mesh);
+/// The faces of a bin's part, around `origin` in world axes.
+void add_part(const scene::BinPart& part, const Vec3& origin, const Fineness& fineness, Mesh& mesh);
 
 }  // namespace tubebin::render

@@ -88,7 +88,7 @@ void describe(Fields& fields, ModelConfig& config) {
 
 ModelConfig load_model_config(const std::string& path) {
   ModelConfig config;
-  read_yaml_file(path, [&](Fields& fields) { describe(fields, config); });
+  scene::check(config.bin, read_yaml_file(path, [&](Fields& fields) { describe(fields, config); }), "bin");
   return config;
 }
 

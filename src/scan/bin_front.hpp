@@ -21,7 +21,7 @@ struct Layer {
 class BinFront {
  public:
   struct BinBox {
-    scene::Box box;
+    SolidBox box;
     scene::PixelWindow window;
     double nearest_depth = 0.0;
   };

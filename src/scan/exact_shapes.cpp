@@ -57,4 +57,20 @@ Interval intersect(const Eigen::AlignedBox3d& box, const Vec3& inverse_direction
   return interval_of([&](IntervalOf<double>& inside) { intersect(box, components(inverse_direction), inside); });
 }
 
+std::array<Vec3, 8> SolidBox::corners() const {
+  std::array<Vec3, 8> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    corners[i] = box_.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+    if (is_turned_) corners[i] = axes_ * corners[i];
+  }
+  return corners;
+}
+
+Interval SolidBox::intersect(const Vec3& direction) const {
+  if (!is_turned_) return scan::intersect(box_, inverse_direction(direction));
+  DirectionOf<double> own;
+  turn(components(direction), own);
+  return scan::intersect(box_, inverse_direction({own.x, own.y, own.z}));
+}
+
 }  // namespace tubebin::scan

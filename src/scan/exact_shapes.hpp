@@ -3,6 +3,7 @@
 // own. The formulas are written once for `Real`, one ray's double or the lanes of several rays.
 #pragma once
 
+#include <array>
 #include <limits>
 
 #include "tubebin/core/geometry.hpp"
@@ -86,6 +87,30 @@ Vec3 inverse_direction(const Vec3& direction);
 template <typename Real>
 void intersect(const Eigen::AlignedBox3d& box, const DirectionOf<Real>& inverse_direction, IntervalOf<Real>& inside);
 Interval intersect(const Eigen::AlignedBox3d& box, const Vec3& inverse_direction);
+
+/// A solid box in axes of its own.
+class SolidBox {
+ public:
+  /// In the axes that rays have.
+  explicit SolidBox(const Eigen::AlignedBox3d& box) : SolidBox(box, Eigen::Matrix3d::Identity(), false) {}
+  /// Its own axes are the columns of `axes`, in those that rays have; where it is not turned they are the same.
+  SolidBox(const Eigen::AlignedBox3d& box, const Eigen::Matrix3d& axes, bool is_turned)
+      : box_(box), axes_(axes), is_turned_(is_turned) {}
+
+  bool is_turned() const { return is_turned_; }
+  /// In its own axes.
+  const Eigen::AlignedBox3d& box() const { return box_; }
+  /// In those of the rays; numbered as a box's.
+  std::array<Vec3, 8> corners() const;
+  Interval intersect(const Vec3& direction) const;
+  template <typename Real>
+  void turn(const DirectionOf<Real>& direction, DirectionOf<Real>& own) const;
+
+ private:
+  Eigen::AlignedBox3d box_;
+  Eigen::Matrix3d axes_;
+  bool is_turned_;
+};
 
 }  // namespace tubebin::scan
 

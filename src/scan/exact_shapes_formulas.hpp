@@ -88,4 +88,11 @@ template <typename Real>
   inside.end = end_xy < end_z ? end_xy : end_z;
 }
 
+template <typename Real>
+[[gnu::always_inline]] inline void SolidBox::turn(const DirectionOf<Real>& d, DirectionOf<Real>& own) const {
+  own.x = d.x * axes_(0, 0) + (d.y * axes_(1, 0) + d.z * axes_(2, 0));
+  own.y = d.x * axes_(0, 1) + (d.y * axes_(1, 1) + d.z * axes_(2, 1));
+  own.z = d.x * axes_(0, 2) + (d.y * axes_(1, 2) + d.z * axes_(2, 2));
+}
+
 }  // namespace tubebin::scan

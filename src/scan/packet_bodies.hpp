@@ -11,7 +11,7 @@
 namespace tubebin::scan {
 
 /// A bit for each of the bin's boxes.
-using BoxFlags = std::uint32_t;
+using BoxFlags = std::uint64_t;
 constexpr BoxFlags box_flag(std::size_t box) { return BoxFlags{1} << box; }
 constexpr BoxFlags kAllBoxes = ~BoxFlags{0};
 
@@ -28,7 +28,7 @@ struct BodiesInReach {
 /// Packets lie side by side in the rows of a window, the first at its left side.
 class PacketBodies {
  public:
-  /// Bodies that are seen at depth_min (metres) or beyond count. At most 32 boxes.
+  /// Bodies that are seen at depth_min (metres) or beyond count. At most 64 boxes.
   PacketBodies(const SceneSolids& solids, const scene::Camera& camera, const scene::PixelWindow& window,
                double depth_min);
 

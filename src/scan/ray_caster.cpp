@@ -226,8 +226,7 @@ Hit RayCaster::first_boundary_hit(const Vec3& direction) const {
       if (bore_radius > 0.0) add(solid.intersect(direction, bore_radius), body.bores);
     }
   };
-  const Vec3 inverse = inverse_direction(direction);
-  for (const scene::Box& box : solids_.bin) add(intersect(box, inverse), bodies[0].parts);
+  for (const SolidBox& box : solids_.bin) add(box.intersect(direction), bodies[0].parts);
   add_solids(solids_.cylinders);
   add_solids(solids_.spheres);
   Hit first;

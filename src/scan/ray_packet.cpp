@@ -109,14 +109,21 @@ bool RayPacket::has_special() const {
   return any;
 }
 
-TUBEBIN_WIDE void RayPacket::offer_bin(const std::vector<scene::Box>& bin, BoxFlags boxes) {
+TUBEBIN_WIDE void RayPacket::offer_bin(const std::vector<SolidBox>& bin, BoxFlags boxes) {
   for (Block& block : blocks_) {
     DirectionOf<Lanes> inverse;
     invert(block.directions, inverse);
     for (std::size_t i = 0; i < bin.size(); ++i) {
       if (!(boxes & box_flag(i))) continue;
       IntervalOf<Lanes> inside;
-      intersect(bin[i], inverse, inside);
+      if (bin[i].is_turned()) {
+        DirectionOf<Lanes> own;
+        bin[i].turn(block.directions, own);
+        invert(own, own);
+        intersect(bin[i].box(), own, inside);
+      } else {
+        intersect(bin[i].box(), inverse, inside);
+      }
       block.take(inside, 0, depth_min_);
     }
   }

@@ -39,7 +39,7 @@ class RayPacket {
 
   /// Each lane takes the solid's first point if it is nearer than what it has. Equal depths go to the lower label, so
   /// that the result does not depend on the order of the solids.
-  void offer_bin(const std::vector<scene::Box>& bin, BoxFlags boxes = kAllBoxes);
+  void offer_bin(const std::vector<SolidBox>& bin, BoxFlags boxes = kAllBoxes);
   void offer(const Labelled<SolidCylinder>& cylinder);
   void offer(const Labelled<SolidSphere>& sphere);
 

@@ -20,8 +20,12 @@ SceneSolids scene_solids(const scene::Scene& scene) {
   SceneSolids solids;
   cloud::Label label = 0;
   for (const scene::PlacedTube& tube : scene.tubes) add_tube(tube, ++label, scene.scanner.position, solids);
-  solids.bin = scene::bin_boxes(scene.bin);
-  for (scene::Box& box : solids.bin) box.translate(-scene.scanner.position);
+  for (const scene::BinPart& part : scene::bin_parts(scene.bin)) {
+    const Eigen::Matrix3d axes = part.world_from_part.linear();
+    scene::Box box = part.box;
+    box.translate(axes.transpose() * Vec3(part.world_from_part.translation() - scene.scanner.position));
+    solids.bin.emplace_back(box, axes, part.is_turned);
+  }
   return solids;
 }
 

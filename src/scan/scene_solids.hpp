@@ -16,11 +16,11 @@ struct Labelled {
   double bore_radius = 0.0;  ///< metres; 0: the solid has no bore
 };
 
-/// Tubes by tube::TubeSolids, the bin by scene::bin_boxes.
+/// Tubes by tube::TubeSolids, the bin by scene::bin_parts.
 struct SceneSolids {
   std::vector<Labelled<SolidCylinder>> cylinders;
   std::vector<Labelled<SolidSphere>> spheres;  ///< where two or more cylinders meet, and nodes alone
-  std::vector<scene::Box> bin;
+  std::vector<SolidBox> bin;
 };
 
 SceneSolids scene_solids(const scene::Scene& scene);

@@ -20,11 +20,7 @@ class ViewBounds {
         scanner_from_seen_(camera.world_from_scanner().linear().transpose()),
         depth_min_(std::max(depth_min, kNearestDepth)) {}
 
-  void add_box(const scene::Box& box) {
-    Corners corners;
-    for (std::size_t i = 0; i < 8; ++i) corners[i] = box.corner(static_cast<scene::Box::CornerType>(i));
-    add_hexahedron(corners);
-  }
+  void add_box(const SolidBox& box) { add_hexahedron(box.corners()); }
 
   void add_cylinder(const SolidCylinder& cylinder) {
     if (!add_disc(cylinder.base(), cylinder.axis(), cylinder.radius()) ||
@@ -33,7 +29,7 @@ class ViewBounds {
   }
 
   void add_sphere(const SolidSphere& sphere) {
-    if (!add_disc(sphere.center(), Vec3::Zero(), sphere.radius())) add_box(sphere.bounds());
+    if (!add_disc(sphere.center(), Vec3::Zero(), sphere.radius())) add_box(SolidBox(sphere.bounds()));
   }
 
   scene::PixelWindow window() const {
@@ -124,7 +120,7 @@ scene::PixelWindow view_window(const SceneSolids& solids, SeenBodies bodies, con
   for (const auto& cylinder : solids.cylinders) bounds.add_cylinder(cylinder.solid);
   for (const auto& sphere : solids.spheres) bounds.add_sphere(sphere.solid);
   if (bodies == SeenBodies::bin_and_tubes)
-    for (const scene::Box& box : solids.bin) bounds.add_box(box);
+    for (const SolidBox& box : solids.bin) bounds.add_box(box);
   return bounds.window();
 }
 

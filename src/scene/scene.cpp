@@ -4,16 +4,6 @@
 
 namespace tubebin::scene {
 
-std::vector<Box> bin_boxes(const Bin& bin) {
-  const double x = bin.length / 2.0;
-  const double y = bin.width / 2.0;
-  const double wall = bin.wall_thickness;
-  return {Box(Vec3(-x - wall, -y - wall, -wall), Vec3(x + wall, y + wall, 0.0)),
-          Box(Vec3(-x - wall, -y - wall, 0.0), Vec3(-x, y + wall, bin.height)),
-          Box(Vec3(x, -y - wall, 0.0), Vec3(x + wall, y + wall, bin.height)),
-          Box(Vec3(-x, -y - wall, 0.0), Vec3(x, -y, bin.height)), Box(Vec3(-x, y, 0.0), Vec3(x, y + wall, bin.height))};
-}
-
 tube::TubeSolids PlacedTube::solids_in_world() const {
   std::vector<Vec3> nodes;
   for (const Vec3& node : tube.nodes) nodes.push_back(world_from_tube * node);
@@ -38,13 +28,6 @@ Pose Scanner::world_from_scanner() const {
   pose.linear() = turned;
   pose.translation() = position;
   return pose;
-}
-
-void describe(Fields& fields, Bin& bin) {
-  fields.number("length", bin.length, {0.001, 100.0}, "m", "inner size along x");
-  fields.number("width", bin.width, {0.001, 100.0}, "m", "inner size along y");
-  fields.number("height", bin.height, {0.001, 100.0}, "m", "height of the walls above the floor");
-  fields.number("wall_thickness", bin.wall_thickness, {0.0001, 10.0}, "m", "of the walls and of the floor");
 }
 
 void describe(Fields& fields, Scanner& scanner) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include "core/json_reader.hpp"
@@ -45,6 +46,15 @@ Scanner read_scanner(const JsonPlace& place) {
   intrinsics.at("cx").expect_near(scanner.width / 2.0, kPixelTolerance);
   intrinsics.at("cy").expect_near(scanner.height / 2.0, kPixelTolerance);
   return scanner;
+}
+
+Bin read_bin(const JsonPlace& place) {
+  Bin bin;
+  place.fields([&](Fields& fields) { describe_box(fields, bin); });
+  if (place.has("draft_deg")) place.fields([&](Fields& fields) { describe_walls(fields, bin); });
+  if (bin.corner_radius > std::min(bin.length, bin.width) / 2.0)
+    place.at("corner_radius").fail("at most half of length and of width");
+  return bin;
 }
 
 PixelWindow read_window(const JsonPlace& place, const Scanner& scanner) {
@@ -191,7 +201,7 @@ SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
   SceneRecord record;
   record.id = root.at("id").text();
   record.seed = root.at("seed").whole(0, std::numeric_limits<std::uint64_t>::max());
-  root.at("bin").fields([&](Fields& fields) { describe(fields, record.scene.bin); });
+  record.scene.bin = read_bin(root.at("bin"));
   record.colors.push_back(read_color(root.at("bin").at("color")));
   record.scene.scanner = read_scanner(root.at("scanner"));
   record.window = read_window(root.at("scanner").at("window"), record.scene.scanner);

@@ -13,7 +13,8 @@ OrderedJson color_to_json(cloud::Color color) { return {color >> 16 & 0xFF, colo
 
 OrderedJson bin_to_json(Bin bin, cloud::Color color) {
   OrderedJson json = {{"label", 0}, {"color", color_to_json(color)}};
-  json.update(fields_to_json([&](Fields& fields) { describe(fields, bin); }));
+  json.update(fields_to_json([&](Fields& fields) { describe_box(fields, bin); }));
+  if (!bin.is_box()) json.update(fields_to_json([&](Fields& fields) { describe_walls(fields, bin); }));
   return json;
 }
 

@@ -73,6 +73,8 @@ TEST(DatasetConfig, RefusesValuesThatContradictEachOther) {
               HasSubstr("scanner.effects.dropouts.tube_reflectivity_max: 0.2 is below"));
   EXPECT_THAT(refusal_of("scanner: {effects: {projector: {enabled: true, position: [0, 0, 3]}}}\n"),
               HasSubstr("scanner.effects.projector.focus_distance: 2 m is not beyond"));
+  EXPECT_THAT(refusal_of("bin: {width: 0.1, corner_radius: 0.06}\n"),
+              AllOf(HasSubstr("bin.corner_radius: 0.06 m"), HasSubstr("up to 0.05 m")));
   EXPECT_THAT(refusal_of("tubes: [1, 5, 1]\n"), StartsWith("c.yaml:1:8: tubes: 1 stands in the list twice"));
 }
 

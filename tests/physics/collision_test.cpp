@@ -33,8 +33,14 @@ double distance_to_tube(const scene::PlacedTube& tube, const Vec3& p) {
 
 double distance_to_bin(const scene::Bin& bin, const Vec3& p) {
   double nearest = 1e9;
-  for (const scene::Box& box : scene::bin_boxes(bin)) nearest = std::min(nearest, box.exteriorDistance(p));
+  for (const scene::BinPart& part : scene::bin_parts(bin))
+    nearest = std::min(nearest, part.box.exteriorDistance(part.world_from_part.inverse() * p));
   return nearest;
+}
+
+std::vector<CollisionBox> boxes_of(const scene::Bin& bin) {
+  const std::vector<scene::BinPart> parts = scene::bin_parts(bin);
+  return {parts.begin(), parts.end()};
 }
 
 /// Points all over a tube's cylinders and caps, `spacing` apart.
@@ -139,19 +145,18 @@ TEST(Collision, GapsOfBentTubesMatchTheirSampledSurfaces) {
   EXPECT_EQ(compared, 40);
 }
 
-TEST(Collision, GapsToTheBinMatchTheSampledSurface) {
+void expect_gaps_of_the_sampled_surface(const scene::Bin& bin) {
   Random random(4);
   tube::TubeOptions options;
   options.length = 0.15;
   options.cylinder_count_min = 1;
   options.cylinder_count_max = 3;
-  const scene::Bin bin;
   int compared = 0;
   for (int trial = 0; trial < 4000 && compared < 40; ++trial) {
     const Vec3 place(random.uniform(-0.3, 0.3), random.uniform(-0.2, 0.2), random.uniform(0.0, 0.3));
     const scene::PlacedTube tube{tube::generate_tubes(1, options, random).front(), make_pose(random.rotation(), place)};
     std::vector<Touch> touches;
-    collide(scene::bin_boxes(bin), CollisionTube(tube), -0.01, touches);
+    collide(boxes_of(bin), CollisionTube(tube), -0.01, touches);
     if (touches.empty()) continue;
     double depth = -1.0;
     for (const Touch& touch : touches) depth = std::max(depth, touch.depth);
@@ -163,6 +168,11 @@ TEST(Collision, GapsToTheBinMatchTheSampledSurface) {
     EXPECT_GT(-depth, gap - 0.0007) << "trial " << trial;
   }
   EXPECT_EQ(compared, 40);
+}
+
+TEST(Collision, GapsToTheBinMatchTheSampledSurface) {
+  expect_gaps_of_the_sampled_surface({});
+  expect_gaps_of_the_sampled_surface({.draft_deg = 8.0, .rim_width = 0.03, .corner_radius = 0.05});
 }
 
 /// How far two straight tubes overlap, negative for a gap: the least over all directions, found by search. By duality
@@ -220,7 +230,7 @@ TEST(Collision, AWallsEdgeThatCutsIntoARimTouchesIt) {
         make_pose(Quat::Identity(), end - 0.1 * direction)};
     double sampled = 0.0;
     for (const Vec3& p : surface_points(tube, 0.0002))
-      for (const scene::Box& box : scene::bin_boxes(bin))
+      for (const auto& [box, pose, is_turned] : scene::bin_parts(bin))
         if (box.contains(p))
           sampled = std::max(sampled, std::min((p - box.min()).minCoeff(), (box.max() - p).minCoeff()));
     ASSERT_GT(sampled, 0.001);

@@ -133,6 +133,26 @@ TEST(Drop, LeavesTubesAtRestTouchingAndHardlyInterpenetrating) {
   EXPECT_LT(largest_movement(nodes_in_world(result.tubes), nodes_in_world(world.tubes())), 2.0 * options.drift_max);
 }
 
+TEST(Drop, LeaningWallsHoldTubes) {
+  Random random(24);
+  const scene::Bin bin{.draft_deg = 10.0, .rim_width = 0.02, .corner_radius = 0.05};
+  const PhysicsOptions options;
+  const DropResult result = drop_tubes(tube::generate_tubes(8, {}, random), bin, options, 6);
+  ASSERT_EQ(result.failure, DropFailure::none) << result.detail;
+  const double lean = std::tan(radians(bin.draft_deg)), slope = std::hypot(1.0, lean);
+  double nearest_to_wall = 1.0;
+  for (const scene::PlacedTube& tube : result.tubes)
+    for (int node = 0; node < static_cast<int>(tube.tube.nodes.size()); ++node) {
+      const Vec3 p = tube.node_in_world(node);
+      if (p.z() > bin.height) continue;
+      const double to_x = (bin.length / 2.0 + lean * p.z() - std::abs(p.x())) / slope;
+      const double to_y = (bin.width / 2.0 + lean * p.z() - std::abs(p.y())) / slope;
+      nearest_to_wall = std::min({nearest_to_wall, to_x, to_y});
+    }
+  EXPECT_GT(nearest_to_wall, -options.penetration_max);
+  EXPECT_LT(nearest_to_wall, 0.05) << "no tube came near a wall";
+}
+
 TEST(Drop, ShortTubesComeToRestToo) {
   Random random(3);
   tube::TubeOptions options;

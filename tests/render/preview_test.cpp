@@ -57,6 +57,14 @@ TEST_F(Preview, LabelsAgreeWithTheScan) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_labels_agree(testing::random_scene(10, seed));
 }
 
+TEST_F(Preview, LabelsAgreeInABinWithLeaningWallsAndARim) {
+  scene::Scene scene = testing::random_scene(10, 4);
+  scene.bin.draft_deg = 5.0;
+  scene.bin.rim_width = 0.02;
+  scene.bin.corner_radius = 0.04;
+  expect_labels_agree(scene);
+}
+
 TEST_F(Preview, LabelsAgreeThroughOpenEnds) {
   scene::Scene scene = testing::random_scene(10, 8);
   for (scene::PlacedTube& placed : scene.tubes) placed.tube.wall_thickness = 0.001;

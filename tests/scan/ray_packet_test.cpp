@@ -15,7 +15,7 @@ Hit first_by_intervals(const SceneSolids& solids, const Vec3& direction, double 
     if (inside.begin < first.depth || (inside.begin == first.depth && label < first.label))
       first = {inside.begin, label};
   };
-  for (const scene::Box& box : solids.bin) offer(intersect(box, inverse_direction(direction)), 0);
+  for (const SolidBox& box : solids.bin) offer(box.intersect(direction), 0);
   for (const auto& [solid, label, bore] : solids.cylinders) offer(solid.intersect(direction), label);
   for (const auto& [solid, label, bore] : solids.spheres) offer(solid.intersect(direction), label);
   return first;
@@ -28,8 +28,8 @@ Vec3 random_point(Random& random, double depth) {
 TEST(RayPacket, EveryLaneTakesWhatItsRayMeetsFirst) {
   Random random(3);
   SceneSolids solids;
-  solids.bin.push_back({Vec3(-1, -1, 2.5), Vec3(1, 1, 2.6)});
-  solids.bin.push_back({Vec3(-0.1, -0.1, 1.0), Vec3(0.1, 0.1, 1.2)});
+  solids.bin.emplace_back(scene::Box(Vec3(-1, -1, 2.5), Vec3(1, 1, 2.6)));
+  solids.bin.emplace_back(scene::Box(Vec3(-0.1, -0.1, 1.0), Vec3(0.1, 0.1, 1.2)));
   for (cloud::Label label = 1; label <= 20; ++label) {
     const Vec3 base = random_point(random, 1.5);
     solids.cylinders.push_back({SolidCylinder(base, base + 0.3 * random_point(random, 0.0), 0.03), label});

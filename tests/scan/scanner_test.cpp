@@ -55,6 +55,35 @@ TEST(Scanner, AgreesWithSphereTracingWhenTiltedAndTurned) {
   EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 1000);
 }
 
+TEST(Scanner, AgreesWithSphereTracingInABinWithLeaningWallsAndARim) {
+  scene::Scene scene = random_scene(8, 6);
+  scene.bin.draft_deg = 7.0;
+  scene.bin.rim_width = 0.03;
+  scene.bin.corner_radius = 0.05;
+  look_closely(scene.scanner, 120, 76);
+  EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 4000);
+  scene.scanner.position = {1.0, -0.15, 1.2};
+  scene.scanner.rotation_deg = {20.0, 37.0, 20.0};
+  EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 1000);
+}
+
+TEST(Scanner, ShowsALeaningWallWhereItIs) {
+  scene::Scene scene;
+  scene.bin.draft_deg = 10.0;
+  look_closely(scene.scanner, 240, 152);
+  const double lean = std::tan(radians(10.0));
+  int on_walls = 0;
+  for (const cloud::Point& point : scan(scene).cloud.points) {
+    const Vec3 p = point.cast<double>();
+    if (!cloud::is_finite(point) || p.z() < 0.001 || p.z() > scene.bin.height - 0.004) continue;
+    const double beyond_x = std::abs(p.x()) - scene.bin.length / 2.0,
+                 beyond_y = std::abs(p.y()) - scene.bin.width / 2.0;
+    EXPECT_NEAR(std::max(beyond_x, beyond_y), p.z() * lean, kSurfaceTolerance);
+    ++on_walls;
+  }
+  EXPECT_GT(on_walls, 500);
+}
+
 TEST(Scanner, AgreesWithSphereTracingAmongTheTubes) {
   scene::Scene scene = random_scene(12, 5);
   look_closely(scene.scanner, 120, 76);

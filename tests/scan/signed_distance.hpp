@@ -98,8 +98,14 @@ class TubeSolid {
 };
 
 /// The bin is what is left of its outer block when the space inside and above the floor is taken out; the
-/// distance to it is exact outside and on the surface.
+/// distance to it is exact outside and on the surface. One that is no box is the union of its parts.
 inline double bin_distance(const Vec3& p, const scene::Bin& bin) {
+  if (!bin.is_box()) {
+    double nearest = 1e9;
+    for (const scene::BinPart& part : scene::bin_parts(bin))
+      nearest = std::min(nearest, box_distance(part.world_from_part.inverse() * p, part.box.min(), part.box.max()));
+    return nearest;
+  }
   const double x = bin.length / 2, y = bin.width / 2, w = bin.wall_thickness, h = bin.height;
   const double walls = std::min(
       {box_distance(p, {-x - w, -y - w, -w}, {-x, y + w, h}), box_distance(p, {x, -y - w, -w}, {x + w, y + w, h}),

@@ -86,6 +86,22 @@ TEST(SceneJson, ScannerEffectsAreThereWhereAnyIsOn) {
               ::testing::ThrowsMessage<IoError>(HasSubstr("/scanner/effects/outliers/share")));
 }
 
+TEST(SceneJson, ABinThatIsNoBoxSaysSo) {
+  SceneRecord record = make_record(1);
+  EXPECT_FALSE(json::parse(format_scene_json(record))["bin"].contains("draft_deg"));
+  record.scene.bin.draft_deg = 2.0 / 3.0;
+  record.scene.bin.corner_radius = 0.03;
+  const json written = json::parse(format_scene_json(record));
+  EXPECT_EQ(parse(written.dump()).scene.bin, record.scene.bin);
+  const json schema = json::parse(read_file(TUBEBIN_SOURCE_DIR "/docs/scene.schema.json"));
+  for (const auto& [key, value] : written["bin"].items())
+    EXPECT_TRUE(schema["properties"]["bin"]["properties"].contains(key)) << key;
+
+  json broken = written;
+  broken["bin"]["corner_radius"] = 0.2;
+  EXPECT_THAT([&] { parse(broken.dump()); }, ::testing::ThrowsMessage<IoError>(HasSubstr("/bin/corner_radius")));
+}
+
 TEST(SceneJson, EverythingReadsBackBitByBit) {
   SceneRecord record = make_record(10);
   record.scene.tubes[3].tube.kind = "pipe";
@@ -179,6 +195,7 @@ TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   record.scene.further_scanners = {record.scene.scanner};
   record.further_windows = {record.window};
   record.scene.scanner.effects.projector.enabled = true;  // else the scanner's effects are not there
+  record.scene.bin.draft_deg = 3.0;                       // else it is a box
   const json scene = json::parse(format_scene_json(record));
   const auto keys = [](const json& object) {
     std::set<std::string> names;

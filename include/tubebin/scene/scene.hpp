@@ -2,6 +2,7 @@
 /// World frame: origin at the centre of the bin's floor, z up, x along the bin's length, y along its width.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,22 +12,51 @@
 
 namespace tubebin::scene {
 
-/// An open box: a floor slab and four walls, all `wall_thickness` thick, around the inner space
-/// |x| <= length / 2, |y| <= width / 2, 0 <= z <= height. All metres.
+/// An open container: a floor and four walls, all `wall_thickness` thick, around an inner space that measures length and
+/// width at its floor. All metres but where the name says otherwise.
 struct Bin {
   double length = 0.55;
   double width = 0.37;
   double height = 0.20;
   double wall_thickness = 0.02;
+  double draft_deg = 0.0;      ///< degrees by which the walls lean outward
+  double rim_width = 0.0;      ///< from the walls' inner upper edge outward; 0: none
+  double corner_radius = 0.0;  ///< between the walls' inner faces; 0: edges
+
+  /// Upright walls that meet at right angles, without a rim.
+  bool is_box() const { return draft_deg == 0.0 && rim_width == 0.0 && corner_radius == 0.0; }
 
   friend bool operator==(const Bin&, const Bin&) = default;
 };
 
 /// An axis-aligned solid box, metres.
 using Box = Eigen::AlignedBox3d;
-/// The bin's solids: floor slab (z from -wall_thickness to 0, as wide as the outer walls), then the walls at
-/// -x, +x (each as wide as the outer bin), -y, +y (between them). They share faces and do not overlap.
-std::vector<Box> bin_boxes(const Bin& bin);
+
+/// A solid box of a bin, in a frame of its own.
+struct BinPart {
+  Box box;
+  Pose world_from_part = Pose::Identity();
+  bool is_turned = false;  ///< else its frame is the world's
+
+  std::array<Vec3, 8> corners_in_world() const;  ///< numbered as a box's: bit k says on which side along axis k
+  Box bounds_in_world() const;
+};
+
+/// The bin's solids, whose union is the bin for all who simulate, scan or draw it: the floor slab, then the walls at -x,
+/// +x, -y, +y. A box's walls share faces and do not overlap. Where walls lean, each is a plate behind its inner face; plates
+/// of rounded corners follow, then the rim. These overlap outside of the inner space.
+std::vector<BinPart> bin_parts(const Bin& bin);
+
+/// A plane that bounds a bin's inner space.
+struct InnerFace {
+  Vec3 outward;         ///< unit
+  double offset = 0.0;  ///< metres: outward . p <= offset inside
+  /// Metres that a point lies inside; negative beyond the face.
+  double depth_inside(const Vec3& p) const { return offset - outward.dot(p); }
+};
+/// Floor, the walls at -x, +x, -y, +y, then the flat facets that stand for rounded corners. The inner space is what lies
+/// inside all of them up to the bin's height.
+std::vector<InnerFace> inner_faces(const Bin& bin);
 
 /// What part of the image becomes the cloud.
 enum class ScanRegion {
@@ -92,6 +122,10 @@ struct Scene {
 Scene seen_from(const Scene& scene, std::size_t source);
 
 void describe(Fields& fields, Bin& bin);
+/// Length to wall_thickness, which every bin has, and what makes a bin other than a box.
+void describe_box(Fields& fields, Bin& bin);
+void describe_walls(Fields& fields, Bin& bin);
+void check(const Bin& bin, const KeyPlaces& places, const std::string& prefix);
 /// The camera alone, without its effects.
 void describe(Fields& fields, Scanner& scanner);
 void check(const Scanner& scanner, const KeyPlaces& places, const std::string& prefix);

@@ -12,15 +12,18 @@ constexpr double kFarthestOff = 0.03;    ///< metres
 constexpr double kParallelWall = 0.985;  ///< the cosine of 10 degrees
 constexpr double kBeside = 0.02;         ///< metres that a face may reach beyond where it should end
 
-/// The inner faces of a bin in its own frame: floor first, then the walls. Normals look inward.
-std::array<Plane, 5> inner_faces(const scene::Bin& bin) {
-  return {Plane{Vec3::UnitZ(), 0.0}, Plane{Vec3::UnitX(), -bin.length / 2.0}, Plane{-Vec3::UnitX(), -bin.length / 2.0},
-          Plane{Vec3::UnitY(), -bin.width / 2.0}, Plane{-Vec3::UnitY(), -bin.width / 2.0}};
+/// The large inner faces of a bin in its own frame: floor first, then the walls. Normals look inward.
+std::array<Plane, 5> inner_planes(const scene::Bin& bin) {
+  const std::vector<scene::InnerFace> faces = scene::inner_faces(bin);
+  std::array<Plane, 5> planes;
+  for (std::size_t i = 0; i < planes.size(); ++i) planes[i] = {-faces[i].outward, -faces[i].offset};
+  return planes;
 }
 
 /// Whether a point near a face is in front of that face's area, and not beside it.
 bool is_before_face(const scene::Bin& bin, const Vec3& p) {
-  return std::abs(p.x()) < bin.length / 2.0 + kBeside && std::abs(p.y()) < bin.width / 2.0 + kBeside &&
+  const double beside = kBeside + std::tan(radians(bin.draft_deg)) * std::max(p.z(), 0.0);
+  return std::abs(p.x()) < bin.length / 2.0 + beside && std::abs(p.y()) < bin.width / 2.0 + beside &&
          p.z() > -kBeside && p.z() < bin.height - kBeside;
 }
 
@@ -54,7 +57,7 @@ Pose small_motion(const std::vector<Constraint>& constraints) {
 bool bin_is_in_place(const ModelingInput& input, double tolerance) {
   constexpr std::size_t kSample = 5000;
   const Pose bin_from_world = input.world_from_bin.inverse();
-  const auto faces = inner_faces(*input.bin);
+  const auto faces = inner_planes(*input.bin);
   std::array<int, 5> on = {}, behind = {}, near = {};
   for (std::size_t i = 0; i < input.points.size(); i += input.points.size() / kSample + 1) {
     if (!cloud::is_finite(input.points[i])) continue;
@@ -74,7 +77,7 @@ bool bin_is_in_place(const ModelingInput& input, double tolerance) {
 
 std::optional<Pose> refined_bin_pose(const ModelingInput& input, const std::vector<FlatRegion>& regions) {
   constexpr int kSteps = 3;
-  const auto faces = inner_faces(*input.bin);
+  const auto faces = inner_planes(*input.bin);
   Pose world_from_bin = input.world_from_bin;
   for (int step = 0; step < kSteps; ++step) {
     const Pose bin_from_world = world_from_bin.inverse();

@@ -30,17 +30,22 @@ void describe(Fields& fields, FilteringOptions& options) {
 }
 
 std::vector<std::uint32_t> crop_bin(const ModelingInput& input, const FilteringOptions& options) {
-  const scene::Bin& bin = *input.bin;
+  struct Limit {
+    cloud::Point outward;
+    float farthest;
+  };
   const Eigen::Isometry3f bin_from_world = input.world_from_bin.inverse().cast<float>();
   const auto margin = static_cast<float>(options.bin_margin);
-  const float x_max = static_cast<float>(bin.length / 2.0) - margin;
-  const float y_max = static_cast<float>(bin.width / 2.0) - margin;
-  const float rim = static_cast<float>(bin.height) + margin;
+  std::vector<Limit> limits;
+  for (const scene::InnerFace& face : scene::inner_faces(*input.bin))
+    limits.push_back({face.outward.cast<float>(), static_cast<float>(face.offset) - margin});
+  const float rim = static_cast<float>(input.bin->height) + margin;
   std::vector<std::uint32_t> inside;
   for (std::uint32_t i = 0; i < input.points.size(); ++i) {
     const cloud::Point p = bin_from_world * input.points[i];
     // Comparisons with NaN are false: pixels that hit nothing fall out here too.
-    const bool between_walls = std::abs(p.x()) < x_max && std::abs(p.y()) < y_max && p.z() > margin;
+    const bool between_walls =
+        std::ranges::all_of(limits, [&](const Limit& limit) { return limit.outward.dot(p) < limit.farthest; });
     if (between_walls || (p.z() > rim && cloud::is_finite(p))) inside.push_back(i);
   }
   return inside;

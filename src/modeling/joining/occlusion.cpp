@@ -25,6 +25,7 @@ OcclusionTest::OcclusionTest(const ModelingInput& input, const ViewProjection& p
       radius_(radius),
       image_(std::make_shared<RangeImage>(projection, input.points, view_cell(input, projection, spacing))),
       bin_(input.bin),
+      bin_faces_(bin_ ? scene::inner_faces(*bin_) : std::vector<scene::InnerFace>()),
       bin_from_world_(input.world_from_bin.inverse()) {}
 
 bool OcclusionTest::in_solid(const Vec3& point) const {
@@ -36,7 +37,7 @@ bool OcclusionTest::in_solid(const Vec3& point) const {
   if (!bin_) return false;
   const Vec3 p = bin_from_world_ * point;
   if (p.z() > bin_->height) return false;
-  return p.z() < 0.0 || std::abs(p.x()) > bin_->length / 2.0 || std::abs(p.y()) > bin_->width / 2.0;
+  return std::ranges::any_of(bin_faces_, [&](const scene::InnerFace& face) { return face.depth_inside(p) < 0.0; });
 }
 
 StretchEvidence OcclusionTest::around(const Vec3& center, const Vec3& direction) const {

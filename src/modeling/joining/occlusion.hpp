@@ -46,6 +46,7 @@ class OcclusionTest {
   double radius_;
   std::shared_ptr<const RangeImage> image_;
   std::optional<scene::Bin> bin_;
+  std::vector<scene::InnerFace> bin_faces_;
   std::vector<FlatRegion> solids_;
   Pose bin_from_world_;
 };

@@ -49,7 +49,7 @@ Image draw_label_view(const scene::Scene& scene, const scene::PixelWindow& windo
   const std::vector<cloud::Color> colors = cloud::label_colors(scene.tubes.size());
   const Vec3& origin = scene.scanner.position;
   Mesh bin;
-  for (const scene::Box& box : scene::bin_boxes(scene.bin)) add_box(box, origin, kLabelFineness, bin);
+  for (const scene::BinPart& part : scene::bin_parts(scene.bin)) add_part(part, origin, kLabelFineness, bin);
   set_color(colors[0]);
   draw(bin);
   for (std::size_t i = 0; i < scene.tubes.size(); ++i) {

@@ -31,7 +31,7 @@ struct View {
 /// What a picture must show: the bin and the tubes.
 Eigen::AlignedBox3d scene_bounds(const scene::Scene& scene) {
   Eigen::AlignedBox3d bounds;
-  for (const scene::Box& box : scene::bin_boxes(scene.bin)) bounds.extend(box);
+  for (const scene::BinPart& part : scene::bin_parts(scene.bin)) bounds.extend(part.bounds_in_world());
   for (const scene::PlacedTube& placed : scene.tubes)
     for (int node = 0; node < static_cast<int>(placed.tube.nodes.size()); ++node)
       for (const double side : {-1.0, 1.0})
@@ -85,11 +85,12 @@ enum class Wall { solid, glass };
 /// The walls between the eye and the bin's inside, which are glass, or the others and the floor.
 Mesh bin_walls(const scene::Bin& bin, Wall kind, const View& view, const Fineness& fineness) {
   Mesh walls;
-  for (const scene::Box& box : scene::bin_boxes(bin)) {
-    const bool upright = box.max().z() > 0.0;
-    const Vec3 outward = Vec3(box.center().x(), box.center().y(), 0.0).normalized();
+  for (const scene::BinPart& part : scene::bin_parts(bin)) {
+    const scene::Box bounds = part.bounds_in_world();
+    const bool upright = bounds.max().z() > 0.0;
+    const Vec3 outward = Vec3(bounds.center().x(), bounds.center().y(), 0.0).normalized();
     const bool hides = upright && outward.dot(view.backward) > kGlassCosine;
-    if (hides == (kind == Wall::glass)) add_box(box, Vec3::Zero(), fineness, walls);
+    if (hides == (kind == Wall::glass)) add_part(part, Vec3::Zero(), fineness, walls);
   }
   return walls;
 }
@@ -180,8 +181,8 @@ class LitView {
     const double reach = bounds_.diagonal().norm() * 1.5;
     const double top = bounds_.min().z();
     Mesh table;
-    add_box(scene::Box(Vec3(-reach, -reach, top - 0.01), Vec3(reach, reach, top)), Vec3::Zero(),
-            {.facets = 4, .cell = reach / 60.0}, table);
+    add_part({.box = scene::Box(Vec3(-reach, -reach, top - 0.01), Vec3(reach, reach, top))}, Vec3::Zero(),
+             {.facets = 4, .cell = reach / 60.0}, table);
     glEnable(GL_CULL_FACE);  // its dark lower side would show where the upper one fades
     draw_lit(std::move(table), 0xD5D9DF,
              {.fade_begin = static_cast<float>(reach * 0.3), .fade_end = static_cast<float>(reach * 0.7)});
