@@ -90,6 +90,12 @@ Centerline centerline(const scene::PlacedTube& tube) {
   return line;
 }
 
+std::vector<TubeLine> tube_lines(const scene::Scene& scene) {
+  std::vector<TubeLine> axes;
+  for (const scene::PlacedTube& tube : scene.tubes) axes.push_back({centerline(tube), tube.tube.radius, {}});
+  return axes;
+}
+
 std::vector<CenterlineSamples> sample_centerlines(const scene::Scene& scene) {
   std::vector<Vec3> scanners = {scene.scanner.position};
   for (const scene::Scanner& scanner : scene.further_scanners) scanners.push_back(scanner.position);

@@ -1,6 +1,9 @@
 #include "tubebin/results/labelled_points.hpp"
 
+#include <filesystem>
+
 #include "core/json_reader.hpp"
+#include "results/result_files.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/evaluation/cloud_pair.hpp"
@@ -9,6 +12,8 @@
 
 namespace tubebin::results {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// The options that model.json says the run had.
 ModelConfig read_run_config(const std::string& path) {
@@ -32,10 +37,11 @@ std::optional<evaluation::LabelledPoints> kept_points(const evaluation::RunScore
     filtered = evaluation::filtered_truth({filtered, path}, {cloud::read_cloud(run.filtered), run.filtered}).cloud;
   const cloud::Cloud labeled = cloud::read_cloud(run.labeled);
   const evaluation::PairedIds pairs = evaluation::pair_clouds({filtered, run.filtered}, {labeled, run.labeled});
+  const scene::SceneRecord record =
+      scene::parse_scene_json(dataset.read(run.key.scene, "scene.json"), dataset.place(run.key.scene, "scene.json"));
   evaluation::LabelledPoints result;
-  result.scanner =
-      scene::parse_scene_json(dataset.read(run.key.scene, "scene.json"), dataset.place(run.key.scene, "scene.json"))
-          .scene.scanner;
+  result.scanner = record.scene.scanner;
+  result.true_tubes = evaluation::tube_lines(record.scene);
   result.ratio = run.key.ratio;
   for (std::size_t i = 0; i < pairs.points.size(); ++i) {
     if (pairs.truth[i] == 0 && pairs.predicted[i] == evaluation::kNullId) continue;
@@ -60,6 +66,7 @@ std::optional<evaluation::LabelledPoints> model_again(const evaluation::RunScore
   const modeling::ModelingResult result = model_cloud(input, read_run_config(run.folder + "/model.json"));
   evaluation::LabelledPoints points;
   points.scanner = input.scene->scene.scanner;
+  points.true_tubes = evaluation::tube_lines(input.scene->scene);
   points.ratio = run.key.ratio;
   points.predicted = result.labels;
   for (const std::uint32_t source : result.source) {
@@ -73,8 +80,11 @@ std::optional<evaluation::LabelledPoints> model_again(const evaluation::RunScore
 }  // namespace
 
 std::optional<evaluation::LabelledPoints> labelled_points(const evaluation::RunScore& run) {
-  if (auto kept = kept_points(run)) return kept;
-  return run.dataset.empty() ? std::nullopt : model_again(run);
+  std::optional<evaluation::LabelledPoints> points = kept_points(run);
+  if (!points && !run.dataset.empty()) points = model_again(run);
+  if (const std::string model = run.folder + "/model.json"; points && !run.folder.empty() && fs::exists(model))
+    points->found_tubes = parse_model_tubes(read_file(model), model);
+  return points;
 }
 
 }  // namespace tubebin::results

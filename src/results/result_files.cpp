@@ -18,6 +18,7 @@ constexpr std::uint64_t kMaxLabel = std::numeric_limits<std::uint32_t>::max();
 // Tubes are compared at samples 5 mm apart, so there must be an end to their length.
 constexpr Limits kCoordinate = {-1000.0, 1000.0};
 constexpr double kMaxModelLength = 10'000.0;
+constexpr Limits kRadius = {0.0, 1000.0};
 constexpr Limits kSeconds = {0.0, 1e9};
 
 void check_format(const JsonPlace& root, const char* expected) {
@@ -60,6 +61,13 @@ evaluation::Contingency read_contingency(const JsonPlace& root, const std::strin
   return contingency;
 }
 
+/// Of a tube, or of a bridge in it: the least counts.
+void add_log_odds(const JsonPlace& part, evaluation::TubeLine& tube) {
+  if (!part.has("log_odds")) return;
+  const double log_odds = part.at("log_odds").number();
+  tube.log_odds = std::min(log_odds, tube.log_odds.value_or(log_odds));
+}
+
 }  // namespace
 
 RunCounts parse_run_counts(std::string_view text, const std::string& name) {
@@ -76,16 +84,19 @@ RunCounts parse_run_counts(std::string_view text, const std::string& name) {
           .contingency = read_contingency(root, name)};
 }
 
-std::vector<evaluation::Centerline> parse_model_centerlines(std::string_view text, const std::string& name) {
+std::vector<evaluation::TubeLine> parse_model_tubes(std::string_view text, const std::string& name) {
   const nlohmann::json json = parse_json(text, name);
-  std::vector<evaluation::Centerline> model;
+  std::vector<evaluation::TubeLine> model;
   double length = 0.0;
   for (const JsonPlace& tube : JsonPlace(json, name).at("tubes").elements()) {
-    evaluation::Centerline line;
+    evaluation::TubeLine line;
+    if (tube.has("radius")) line.radius = tube.at("radius").number(kRadius);
+    add_log_odds(tube, line);
     for (const JsonPlace& cylinder : tube.at("cylinders").elements()) {
-      line.push_back({cylinder.at("start").vector(kCoordinate), cylinder.at("end").vector(kCoordinate),
-                      cylinder.has("bridged") && cylinder.at("bridged").flag()});
-      length += (line.back().end - line.back().start).norm();
+      line.centerline.push_back({cylinder.at("start").vector(kCoordinate), cylinder.at("end").vector(kCoordinate),
+                                 cylinder.has("bridged") && cylinder.at("bridged").flag()});
+      add_log_odds(cylinder, line);
+      length += (line.centerline.back().end - line.centerline.back().start).norm();
     }
     model.push_back(std::move(line));
   }

@@ -25,8 +25,8 @@ struct RunCounts {
 };
 
 RunCounts parse_run_counts(std::string_view text, const std::string& name);
-/// model.json: the centreline of each tube.
-std::vector<evaluation::Centerline> parse_model_centerlines(std::string_view text, const std::string& name);
+/// model.json: the axis of each tube.
+std::vector<evaluation::TubeLine> parse_model_tubes(std::string_view text, const std::string& name);
 /// times.json: the modelling time, seconds.
 double parse_modeling_seconds(std::string_view text, const std::string& name);
 /// failures.jsonl: reasons by run folder.

@@ -71,7 +71,8 @@ evaluation::RunScore read_run(const std::string& folder, evaluation::RunKey key,
   key.case_number = counts.case_number;
   std::vector<evaluation::Centerline> model;
   if (const std::string file = folder + "/model.json"; truth != nullptr && fs::exists(file))
-    model = parse_model_centerlines(read_file(file), file);
+    for (evaluation::TubeLine& tube : parse_model_tubes(read_file(file), file))
+      model.push_back(std::move(tube.centerline));
   evaluation::RunScore run =
       evaluation::score_run(key, counts.contingency, evaluation::match_segments(counts.contingency), truth, model);
   // Segments without a point in the filtered cloud are tubes of the model all the same.

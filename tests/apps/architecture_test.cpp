@@ -78,7 +78,7 @@ std::string loaded_by(const std::string& program) {
 
 TEST(Architecture, ProgramsThatReadCloudsLoadNoSimulator) {
   EXPECT_THAT(loaded_by("generate_dataset"), ::testing::HasSubstr("libode"));
-  for (const std::string program : {"model_tubes", "evaluate", "calibrate_modeler"})
+  for (const std::string program : {"model_tubes", "evaluate", "calibrate_modeler", "view"})
     for (const std::string library : {"libode", "libembree", "OSMesa"})
       EXPECT_THAT(loaded_by(program), ::testing::Not(::testing::HasSubstr(library))) << program;
 }

@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include "support/commands.hpp"
-#include "support/synthetic_results.hpp"
+#include "support/browser.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/random.hpp"
 #include "tubebin/scan/scanner.hpp"
@@ -15,7 +14,6 @@ namespace {
 using ::testing::AllOf;
 using testing::CommandResult;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// Adds the scene's cloud to the data set, and kept clouds to the runs of the scene, with some points mislabelled.
 void keep_clouds(const std::filesystem::path& folder, const std::string& scene_name, int tubes,
@@ -55,10 +53,11 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-class ReportInBrowser : public ::testing::Test {
+class ReportInBrowser : public testing::BrowserTest {
  protected:
   void SetUp() override {
-    if (std::system("command -v chromium >/dev/null 2>&1") != 0) GTEST_SKIP() << "no chromium here";
+    BrowserTest::SetUp();
+    if (IsSkipped()) return;
     testing::SyntheticSweep sweep;
     sweep.tubes = {1, 5, 10, 20};
     sweep.ratios = {0.1, 0.3, 1.0};
@@ -70,44 +69,9 @@ class ReportInBrowser : public ::testing::Test {
     ASSERT_EQ(evaluated.exit_code, 0) << evaluated.output;
   }
 
-  /// The document after the page's scripts have run, in a window of 1280 by 900 pixels.
-  std::string dom(const std::string& page) const {
-    const std::string log = (folder_.path() / "browser.log").string();
-    const CommandResult result = testing::run_command(
-        fmt::format("chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
-                    "--disable-background-networking --disable-component-update --disable-sync "
-                    "--allow-file-access-from-files --window-size=1280,900 --user-data-dir={0}/profile "
-                    "--virtual-time-budget=5000 --enable-logging=stderr --dump-dom file://{0}/{1} 2>{2}",
-                    folder_.path().string(), page, log));
-    EXPECT_EQ(result.exit_code, 0) << read_file(log);
-    EXPECT_THAT(read_file(log), Not(HasSubstr("CONSOLE")));
-    return result.output;
-  }
-
-  /// What `script` puts into `result`, evaluated beside the report in a frame of that width.
   nlohmann::json evaluate_in_frame(int width, const std::string& script) const {
-    testing::write_text(folder_.path() / "frame.html", fmt::format(R"html(<!DOCTYPE html><body>
-<iframe id="frame" src="report.html" style="width:{}px;height:900px;border:0"></iframe><script>
-document.getElementById("frame").addEventListener("load", (event) => {{
-  const page = event.target.contentDocument, result = {{}};
-  {}
-  document.body.dataset.result = encodeURIComponent(JSON.stringify(result));
-}});
-</script></body>)html",
-                                                                   width, script));
-    const std::string html = dom("frame.html");
-    const std::string start = "data-result=\"";
-    const std::size_t at = html.find(start);
-    if (at == std::string::npos) throw std::runtime_error("the script did not run: " + html);
-    const std::string encoded = html.substr(at + start.size(), html.find('"', at + start.size()) - at - start.size());
-    std::string text;
-    for (std::size_t i = 0; i < encoded.size(); ++i)
-      if (encoded[i] == '%') text += static_cast<char>(std::stoi(encoded.substr(i + 1, 2), nullptr, 16)), i += 2;
-      else text += encoded[i];
-    return nlohmann::json::parse(text);
+    return BrowserTest::evaluate_in_frame("report.html", width, script);
   }
-
-  testing::TemporaryFolder folder_;
 };
 
 TEST_F(ReportInBrowser, OpensWithoutErrorsAndShowsEverything) {

@@ -116,7 +116,9 @@ inline void run(std::string_view bytes) {
     const results::RunCounts counts = results::parse_run_counts(bytes.substr(0, divider), "fuzz result");
     std::vector<evaluation::Centerline> model;
     if (divider != std::string_view::npos)
-      model = results::parse_model_centerlines(bytes.substr(divider + kDivider.size()), "fuzz model");
+      for (const evaluation::TubeLine& tube :
+           results::parse_model_tubes(bytes.substr(divider + kDivider.size()), "fuzz model"))
+        model.push_back(tube.centerline);
     score = evaluation::score_run({}, counts.contingency, evaluation::match_segments(counts.contingency), &two_tubes(),
                                   model);
   } catch (const IoError&) {

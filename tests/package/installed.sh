@@ -29,7 +29,7 @@ completes() {  # "WORD WORD..." EXPECTED...: pressing tab after the words offers
   [ "$offered" = "${*:2}" ] || fail "'$1' completes to '$offered', not '${*:2}'"
 }
 
-for program in generate_dataset model_tubes calibrate_modeler export_dataset evaluate; do check_help "$program"; done
+for program in generate_dataset model_tubes calibrate_modeler export_dataset evaluate view; do check_help "$program"; done
 completes "model_tubes cloud.pcd --rat" --ratio --ratios
 completes "model_tubes cloud.pcd --method " centerline region_growing both
 completes "export_dataset -f c" coco

@@ -1,6 +1,7 @@
 /// Centrelines of real and modelled tubes: how far apart they are, and what the scanner could see of them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "tubebin/scene/scene.hpp"
@@ -16,6 +17,13 @@ struct CenterlineSegment {
 
 /// The axes of a tube's cylinders; chains, trees and loops alike.
 using Centerline = std::vector<CenterlineSegment>;
+
+/// A real or modelled tube's axis.
+struct TubeLine {
+  Centerline centerline;
+  double radius = 0.0;             ///< metres; 0: not known
+  std::optional<double> log_odds;  ///< nats, of a modelled tube: for its least sure part, a bridge or that it is a tube
+};
 
 /// Distance between neighbouring samples of a centreline, metres.
 constexpr double kCenterlineStep = 0.005;
@@ -41,6 +49,8 @@ struct CenterlineSamples {
 
 /// The axes of the tube's cylinders in the world frame.
 Centerline centerline(const scene::PlacedTube& tube);
+/// Those of every tube of the scene.
+std::vector<TubeLine> tube_lines(const scene::Scene& scene);
 
 /// Samples of every tube of the scene. One is visible if no other tube crosses the line from the scanner to
 /// it.

@@ -14,10 +14,12 @@ namespace tubebin::evaluation {
 /// The points of a filtered cloud with their ground-truth labels (0 = bin) and predicted ids.
 struct LabelledPoints {
   std::vector<cloud::Point> points;  ///< metres, world frame
-  std::vector<SegmentId> truth;
-  std::vector<SegmentId> predicted;
+  std::vector<SegmentId> truth;      ///< one a point; none where it is not known, which the 3D view alone takes
+  std::vector<SegmentId> predicted;  ///< as `truth`
   scene::Scanner scanner;
-  double ratio = 1.0;  ///< of the scanner's points that are here, so that the rest can be filled
+  double ratio = 1.0;                     ///< of the scanner's points that are here, so that the rest can be filled
+  std::vector<TubeLine> true_tubes = {};  ///< tube k at [k - 1]; may be empty, as the next
+  std::vector<TubeLine> found_tubes = {};
 };
 
 /// PNG files. Matched labels take the colour of their tube, labels without a tube are grey, points without a

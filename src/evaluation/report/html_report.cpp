@@ -4,28 +4,15 @@
 
 #include "evaluation/report/first_screen.hpp"
 #include "evaluation/report/measures.hpp"
+#include "evaluation/report/page_head.hpp"
 #include "evaluation/report/side_by_side.hpp"
 #include "tubebin/evaluation/result_plots.hpp"
 #include "tubebin/evaluation/result_tables.hpp"
 
-extern const char* const kReportCss;  // data/report/report.css
-extern const char* const kReportJs;   // data/report/report.js
+extern const char* const kReportJs;  // data/report/report.js
 
 namespace tubebin::evaluation {
 namespace {
-
-constexpr const char* kHead = R"html(<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<link rel="icon" href="data:,">
-<title>tubebin evaluation</title>
-<style>
-{}</style>
-</head>
-<body>
-)html";
 
 struct Section {
   const char* id;
@@ -100,8 +87,8 @@ std::string paper_html(const ReportInput& input, const std::vector<GroupSummary>
 std::string format_html_report(const ReportInput& input) {
   const Evaluation& evaluation = input.evaluation;
   const std::vector<GroupSummary> groups = summarize(evaluation.runs);
-  const Section sections[] = {{"side_by_side", "Side by side", side_by_side_html(evaluation)},
-                              {"worst", "Worst scenes", worst_scenes_html(input)},
+  const Section sections[] = {{"worst", "Worst scenes", worst_scenes_html(input)},
+                              {"side_by_side", "Side by side", side_by_side_html(evaluation)},
                               {"scenes", "All scenes", scene_table_html(evaluation)},
                               {"measures", "Measures", measures_html(evaluation)},
                               {"plots", "Plots", plots_html(input, groups)},
@@ -113,7 +100,7 @@ std::string format_html_report(const ReportInput& input) {
                                evaluation.configuration.empty() ? ""
                                                                 : fmt::format("<pre tabindex=\"0\">{}</pre>\n",
                                                                               escape_html(evaluation.configuration))}};
-  std::string html = fmt::format(fmt::runtime(kHead), kReportCss);
+  std::string html = page_head("tubebin evaluation", "");
   html += fmt::format("<header><h1>How well the tubes were found</h1>\n<p class=\"soft\">{}, tubebin {}</p>\n<nav>",
                       escape_html(evaluation.source), TUBEBIN_VERSION);
   for (const Section& section : sections)
