@@ -144,8 +144,8 @@ void label(const ModelingInput& input, const Background& background, FilteredClo
   if (options.filtering.ratio < 1.0) {
     points.clear();
     for (const std::uint32_t i : background.foreground) points.push_back(input.points[i]);
-    const auto all = label_points(points, result.tubes, background.noise);
-    for (std::size_t k = 0; k < points.size(); ++k) result.all_labels[background.foreground[k]] = all.labels[k];
+    const auto labels = label_further_points(points, result.tubes, background.noise);
+    for (std::size_t k = 0; k < points.size(); ++k) result.all_labels[background.foreground[k]] = labels[k];
   }
   for (std::size_t k = 0; k < set_aside.size(); ++k) result.all_labels[background.set_aside[k]] = set_aside[k];
   for (std::size_t k = 0; k < result.source.size(); ++k) result.all_labels[result.source[k]] = result.labels[k];

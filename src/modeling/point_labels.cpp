@@ -58,19 +58,30 @@ cloud::Label label_of(const NearestSurface& nearest) {
   return nearest.surface == NearestSurface::kNone ? 0 : nearest.surface + 1;
 }
 
+std::vector<cloud::Label> labels_of(const std::vector<NearestSurface>& nearest) {
+  std::vector<cloud::Label> labels(nearest.size());
+  std::ranges::transform(nearest, labels.begin(), label_of);
+  return labels;
+}
+
+/// Half a radius is what a bridge's guessed course may be off, as much again what a scanner strews about an edge. Where a
+/// tube is seen, two fifths of a radius are far more than fits are off, and keeps clear of what it lies on.
+Reach reach_of(const std::vector<TubeModel>& tubes, double noise) {
+  const double least = tubes.empty() ? 1.0 : std::ranges::min_element(tubes, {}, &TubeModel::radius)->radius;
+  return {.seen = std::clamp(5.0 * noise / least, 0.4, 1.0), .end = 1.0, .bridged = 1.0};
+}
+
 }  // namespace
 
 PointLabels label_points(std::span<const cloud::Point> points, std::vector<TubeModel>& tubes, double noise) {
-  // Half a radius is what a bridge's guessed course may be off, as much again what a scanner strews about an edge. Where
-  // a tube is seen, two fifths of a radius are far more than fits are off, and keeps clear of what it lies on.
-  const double least = tubes.empty() ? 1.0 : std::ranges::min_element(tubes, {}, &TubeModel::radius)->radius;
-  const Reach reach{.seen = std::clamp(5.0 * noise / least, 0.4, 1.0), .end = 1.0, .bridged = 1.0};
-  auto nearest = nearest_tubes(points, tubes, reach);
-  if (drop_tubes_of_chance(tubes, nearest)) nearest = nearest_tubes(points, tubes, reach);
-  PointLabels result{.labels = {}, .noise = standard_deviation(nearest, tubes)};
-  result.labels.reserve(points.size());
-  for (const NearestSurface& n : nearest) result.labels.push_back(label_of(n));
-  return result;
+  auto nearest = nearest_tubes(points, tubes, reach_of(tubes, noise));
+  if (drop_tubes_of_chance(tubes, nearest)) nearest = nearest_tubes(points, tubes, reach_of(tubes, noise));
+  return {.labels = labels_of(nearest), .noise = standard_deviation(nearest, tubes)};
+}
+
+std::vector<cloud::Label> label_further_points(std::span<const cloud::Point> points,
+                                               const std::vector<TubeModel>& tubes, double noise) {
+  return labels_of(nearest_tubes(points, tubes, reach_of(tubes, noise)));
 }
 
 std::vector<cloud::Label> label_set_aside(std::span<const cloud::Point> points, const std::vector<TubeModel>& tubes,

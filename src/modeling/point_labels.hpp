@@ -19,6 +19,10 @@ struct PointLabels {
 /// the scan as far as it is known.
 PointLabels label_points(std::span<const cloud::Point> points, std::vector<TubeModel>& tubes, double noise);
 
+/// Labels of other points of the same scan.
+std::vector<cloud::Label> label_further_points(std::span<const cloud::Point> points,
+                                               const std::vector<TubeModel>& tubes, double noise);
+
 /// Labels of points that were set aside with a plane: a tube's where one's surface explains the point as well, where a
 /// plane cuts through it.
 std::vector<cloud::Label> label_set_aside(std::span<const cloud::Point> points, const std::vector<TubeModel>& tubes,

@@ -1,0 +1,37 @@
+#include "modeling/point_labels.hpp"
+
+#include <gtest/gtest.h>
+
+#include "modeling/built_surface.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+TubeModel model_along(const std::vector<Vec3>& nodes) {
+  TubeModel tube;
+  tube.radius = kRadius;
+  tube.paths.push_back({.nodes = nodes, .bridged = std::vector<bool>(nodes.size() - 1, false)});
+  return tube;
+}
+
+/// Points of a scan that were not modelled must not change whose label is whose, wherever they lie about a tube.
+TEST(PointLabels, FurtherPointsLeaveTheTubesAsTheyAre) {
+  const std::vector<Vec3> first = {{-0.1, 0, 0}, {0.1, 0, 0}}, second = {{-0.1, 0.1, 0}, {0.1, 0.1, 0}};
+  std::vector<TubeModel> tubes = {model_along(first), model_along(second)};
+  std::vector<cloud::Point> points = upper_half_of(first).points;
+  const std::size_t of_first = points.size();
+  for (const cloud::Point& point : upper_half_of(second).points) points.push_back(point);
+  const PointLabels modelled = label_points(points, tubes, 0.0);
+  ASSERT_EQ(tubes.size(), 2u);
+  for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(modelled.labels[i], i < of_first ? 1u : 2u);
+
+  // About the first tube, but not on its surface: alone they would be chance.
+  std::vector<cloud::Point> further = upper_half_of(first, 0.7 * kRadius).points;
+  const std::size_t strays = further.size();
+  for (const cloud::Point& point : upper_half_of(second).points) further.push_back(point);
+  const std::vector<cloud::Label> labels = label_further_points(further, tubes, 0.0);
+  for (std::size_t i = strays; i < further.size(); ++i) ASSERT_EQ(labels[i], 2u);
+}
+
+}  // namespace
+}  // namespace tubebin::modeling
