@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace tubebin::modeling {
@@ -92,6 +93,34 @@ void look_at_sides(const TubePiece& piece, const OcclusionTest& occlusion, Piece
   evidence.surface /= std::max(samples, 1.0), evidence.empty /= std::max(samples, 1.0);
 }
 
+/// A tube's own solid keeps places of its centreline two radii apart, but for those less than the tightest half turn apart
+/// along it. Votes on a thicker round thing make a curve that winds over its surface.
+double coiled_part(const TubePiece& piece) {
+  struct Place {
+    Vec3 position;
+    double arc_length;
+  };
+  std::vector<Place> places;
+  double arc_length = 0.0;
+  for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
+    const Vec3 along = piece.nodes[k + 1] - piece.nodes[k];
+    const int steps = static_cast<int>(2.0 * along.norm() / piece.radius) + 1;
+    for (int step = 0; step < steps; ++step) {
+      const double t = (step + 0.5) / steps;
+      places.push_back({.position = piece.nodes[k] + t * along, .arc_length = arc_length + t * along.norm()});
+    }
+    arc_length += along.norm();
+  }
+  const double half_turn = std::numbers::pi * piece.radius;
+  std::vector<bool> is_coiled(places.size(), false);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t j = i + 1; j < places.size(); ++j)
+      if (places[j].arc_length - places[i].arc_length > half_turn &&
+          (places[j].position - places[i].position).norm() < piece.radius)
+        is_coiled[i] = is_coiled[j] = true;
+  return static_cast<double>(std::ranges::count(is_coiled, true)) / static_cast<double>(places.size());
+}
+
 }  // namespace
 
 PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point> points,
@@ -112,6 +141,7 @@ PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point
     evidence.curvature_error = 1.0;
   }
   look_at_sides(piece, occlusion, evidence);
+  evidence.coiled = coiled_part(piece);
   return evidence;
 }
 
@@ -121,7 +151,7 @@ bool has_other_radius(const PieceEvidence& evidence) {
 
 bool is_tube(const PieceEvidence& evidence, double radius, double noise) {
   if (evidence.sigma > 3.0 * noise + radius / 12.0) return false;
-  if (evidence.empty > 0.3) return false;
+  if (evidence.empty > 0.3 || evidence.coiled > 0.2) return false;
   // A plane has to be four standard deviations away.
   return evidence.curvature_error < 0.25 && std::abs(evidence.curvature - 1.0) < 0.15 + 2.0 * evidence.curvature_error;
 }

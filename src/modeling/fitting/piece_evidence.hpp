@@ -15,6 +15,7 @@ struct PieceEvidence {
   double sigma = 0.0;            ///< metres, of the points' distances to the best surface of any curvature
   double surface = 0.0;          ///< part of its visible sides where the scanner measured a surface
   double empty = 0.0;            ///< part of them where it saw through, and so no tube is
+  double coiled = 0.0;           ///< part of its length within a radius of another place of its centreline
 };
 
 PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point> points,

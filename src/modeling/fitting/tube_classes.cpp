@@ -20,6 +20,9 @@ constexpr std::size_t kMostClasses = 4, kMostTries = 8;
 /// So many pieces are joined in a second or two; a pile of a hundred tubes has some five hundred.
 constexpr std::size_t kMostPieces = 1500;
 
+/// In radii, the longest piece of a radius that is one of tubes: necks and caps of bottles and jars end before.
+constexpr double kLeastLength = 8.0;
+
 void keep_surest(std::vector<TubePiece>& pieces) {
   if (pieces.size() <= kMostPieces) return;
   std::ranges::stable_sort(pieces, std::greater<>(), &TubePiece::evidence);
@@ -90,7 +93,7 @@ class ClassFinder {
     }
     TubeClass found = pieces_of(cloud, radius);
     const auto longest = std::ranges::max_element(found.pieces, {}, &TubePiece::length);
-    if (longest == found.pieces.end() || longest->length() < 6.0 * radius) return {};
+    if (longest == found.pieces.end() || longest->length() < kLeastLength * radius) return {};
     return found;
   }
 

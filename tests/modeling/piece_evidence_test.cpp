@@ -1,0 +1,49 @@
+#include "modeling/fitting/piece_evidence.hpp"
+
+#include <gtest/gtest.h>
+
+#include "modeling/built_surface.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// Of a tube through the nodes whose upper half was measured.
+PieceEvidence evidence_of(const std::vector<Vec3>& nodes) {
+  const FilteredCloud cloud = upper_half_of(nodes);
+  const ModelingInput input{
+      .points = cloud.points, .world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 1}), .bin = {}};
+  const OcclusionTest occlusion(input, view_from_above(), cloud.spacing, kRadius);
+  return examine_piece({.nodes = nodes, .radius = kRadius, .points = cloud.source}, cloud.points, occlusion);
+}
+
+/// A centreline that winds about a can twice as wide as it is thick.
+std::vector<Vec3> helix(double rise_of_turn) {
+  std::vector<Vec3> nodes;
+  for (int k = 0; k <= 36; ++k) {
+    const double turns = k / 12.0, angle = 2.0 * std::numbers::pi * turns;
+    nodes.emplace_back(2.0 * kRadius * std::cos(angle), 2.0 * kRadius * std::sin(angle), turns * rise_of_turn);
+  }
+  return nodes;
+}
+
+TEST(PieceEvidence, IsATubeWhereItIsOne) {
+  const PieceEvidence evidence = evidence_of({{-0.1, 0, 0}, {0, 0.02, 0}, {0.08, 0.08, 0}});
+  EXPECT_NEAR(evidence.curvature, 1.0, 0.05);
+  EXPECT_EQ(evidence.coiled, 0.0);
+  EXPECT_TRUE(is_tube(evidence, kRadius, 0.0));
+}
+
+TEST(PieceEvidence, IsCoiledWhereItsTurnsShareOnePlace) {
+  EXPECT_GT(evidence_of(helix(0.8 * kRadius)).coiled, 0.9);
+  EXPECT_EQ(evidence_of(helix(2.5 * kRadius)).coiled, 0.0);  // a spring is one tube beside itself
+}
+
+TEST(PieceEvidence, TakesNoCoilForATube) {
+  PieceEvidence evidence = evidence_of({{-0.1, 0, 0}, {0.1, 0, 0}});
+  ASSERT_TRUE(is_tube(evidence, kRadius, 0.0));
+  evidence.coiled = evidence_of(helix(0.8 * kRadius)).coiled;
+  EXPECT_FALSE(is_tube(evidence, kRadius, 0.0));
+}
+
+}  // namespace
+}  // namespace tubebin::modeling
