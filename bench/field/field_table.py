@@ -47,7 +47,10 @@ def points_of(image):
 
 
 def write_pcd(image, path):
-    points, viewpoint = points_of(image)
+    write_organized(*points_of(image), path)
+
+
+def write_organized(points, viewpoint, path):
     height, width = points.shape[:2]
     out = np.zeros(height * width, [('x', '<f4'), ('y', '<f4'), ('z', '<f4')])
     out['x'], out['y'], out['z'] = points.reshape(-1, 3).T
