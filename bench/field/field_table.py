@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Recall and false points of model_tubes on whole clouds, nothing told, by kind of cloud.
 
-  field_table.py MODEL_TUBES FOLDER [--method centerline|region_growing] [--only KIND...] [-- OPTION...]
+  field_table.py MODEL_TUBES FOLDER [--method centerline|region_growing] [--only KIND...] [--check] [-- OPTION...]
 
 FOLDER has either depth images with labels (KIND_N.npz: depth, label, depth_of_0, depth_step, hfov, world_from_camera, frame,
 unit, shift, yaw_deg), or is a data set of generate_dataset (SET/CASE/cloud.pcd with its own labels); its clouds are modelled
@@ -10,6 +10,8 @@ without their scene.json, and with --scene beside it. OPTIONs go to model_tubes.
 recall: share of all tube points of the cloud that carry their tube's label, labels matched one to one (Hungarian).
 false: points of anything else that carry a tube's label, as a share of the tube points. seconds: of all steps, without reading
 and writing. Needs numpy and scipy.
+
+--check exits with 1 where a cloud's recall is below 0.95 or its false points are above 2 %, with 77 where FOLDER is missing.
 """
 import argparse, json, os, shutil, subprocess, sys, tempfile
 from pathlib import Path
@@ -107,7 +109,11 @@ def main():
     parser.add_argument('--method', default='centerline', choices=['centerline', 'region_growing'])
     parser.add_argument('--only', nargs='*', default=[])
     parser.add_argument('--scene', action='store_true', help='leave scene.json beside the clouds of a data set')
+    parser.add_argument('--check', action='store_true', help='fail where a cloud is far from the rest')
     given = parser.parse_args(arguments)
+    if given.check and not Path(given.folder).is_dir():
+        print(f'skipped: no {given.folder}')
+        sys.exit(77)
     kinds = {}
     with tempfile.TemporaryDirectory() as work:
         for kind, cloud, truth, unit in clouds(given.folder, Path(work), given.scene):
@@ -121,6 +127,9 @@ def main():
         recall, false, off, seconds = map(np.array, zip(*rows))
         print(f'| {kind} | {len(rows)} | {recall.mean():.4f} | {recall.min():.4f} | {100 * false.mean():.2f} % | '
               f'{100 * false.max():.2f} % | {(abs(off) > 1).sum()} | {seconds.max():.2f} |', flush=True)
+    failed = [kind for kind, rows in kinds.items() if any(row[0] < 0.95 or row[1] > 0.02 for row in rows)]
+    if given.check and failed:
+        sys.exit(f'recall below 0.95 or false points above 2 %: {", ".join(failed)}')
 
 
 if __name__ == '__main__':
