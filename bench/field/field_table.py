@@ -11,13 +11,18 @@ recall: share of all tube points of the cloud that carry their tube's label, lab
 false: points of anything else that carry a tube's label, as a share of the tube points. seconds: of all steps, without reading
 and writing. Needs numpy and scipy.
 
---check exits with 1 where a cloud's recall is below 0.95 or its false points are above 2 %, with 77 where FOLDER is missing.
+--check exits with 1 where a cloud's recall is below 0.95 or its false points are above 2 %, with 77 where FOLDER, numpy or
+scipy is missing.
 """
 import argparse, json, os, shutil, subprocess, sys, tempfile
 from pathlib import Path
 
-import numpy as np
-from scipy.optimize import linear_sum_assignment
+try:
+    import numpy as np
+    from scipy.optimize import linear_sum_assignment
+except ImportError as missing:
+    print(f'skipped: {missing}')
+    sys.exit(77)
 
 TYPES = {('F', '4'): '<f4', ('F', '8'): '<f8', ('U', '4'): '<u4', ('U', '2'): '<u2', ('U', '1'): 'u1', ('I', '4'): '<i4'}
 
