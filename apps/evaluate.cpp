@@ -32,6 +32,8 @@ Examples:
       one pair of clouds: its matching and its micro-recall
   evaluate results --html report.html
       the results folder of model_tubes: tables here, plots and pictures in the report
+  evaluate results --html report.html --scenes A10/003
+      that scene in the report, too, beside the worst ones
   evaluate results_a results_b --paper --plots plots
       both sets together, against the paper's tables, figures and claims
   evaluate results --format csv > groups.csv
@@ -71,6 +73,7 @@ struct Arguments {
   std::string dataset;
   std::string html;
   std::string plots;
+  std::vector<std::string> scenes;
   bool paper = false;
   bool quiet = false;
   std::string field = "auto";
@@ -80,8 +83,10 @@ struct Arguments {
 
 void add_options(CLI::App& app, Arguments& arguments) {
   auto* folder = app.add_option("FOLDERS", arguments.folders, "Results folders, or a data set with --predictions");
-  auto* filtered = app.add_option("--filtered", arguments.filtered, "Cloud with the ground truth (PCD or PLY)");
-  auto* labeled = app.add_option("--labeled", arguments.labeled, "The same points, or some of them, as labelled");
+  auto* filtered =
+      app.add_option("--filtered", arguments.filtered, "Cloud with the ground truth (PCD or PLY)")->type_name("FILE");
+  auto* labeled = app.add_option("--labeled", arguments.labeled, "The same points, or some of them, as labelled")
+                      ->type_name("FILE");
   auto* predictions = app.add_option("--predictions", arguments.predictions,
                                      "Labelled clouds of any program, one a scene; repeatable, to compare programs")
                           ->allow_extra_args(false)
@@ -98,8 +103,12 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--format", arguments.format, "Of the tables")
       ->check(CLI::IsMember(names_of(kFormats)))
       ->capture_default_str();
-  auto* html = app.add_option("--html", arguments.html, "Also write a report: one file with tables, plots and pictures")
+  auto* html = app.add_option("--html", arguments.html,
+                              "Also write a report: one file with tables, plots, pictures and scenes in 3D")
                    ->type_name("FILE");
+  app.add_option("--scenes", arguments.scenes, "What the report shows beside the worst scenes: A10/003 B10/001")
+      ->type_name("SCENE...")
+      ->needs(html);
   auto* plots = app.add_option("--plots", arguments.plots, "Also write the plots as .svg files")->type_name("DIR");
   auto* paper = app.add_flag("--paper", arguments.paper, "Compare with the paper: its figures, tables and claims");
   app.add_flag("-q,--quiet", arguments.quiet, "No progress");
@@ -194,8 +203,8 @@ int evaluate_folders(const Arguments& arguments) {
   fmt::print("{}", evaluation::format_results(evaluation, kFormats.at(arguments.format), generation));
   print_gaps(evaluation);
   if (!arguments.html.empty())
-    write_file_atomically(arguments.html,
-                          evaluation::format_html_report({evaluation, generation, results::labelled_points}));
+    write_file_atomically(arguments.html, evaluation::format_html_report(
+                                              {evaluation, generation, results::labelled_points, arguments.scenes}));
   if (!arguments.plots.empty()) write_plots(arguments.plots, plots_of(evaluation, generation));
   const bool is_complete = evaluation.missing.empty() && evaluation.failed.empty();
   return static_cast<int>(is_complete ? ExitCode::done : ExitCode::incomplete);

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 
 scripts/install_dependencies.sh
 cmake --preset release
-cmake --build --preset release --target generate_dataset model_tubes evaluate
+cmake --build --preset release --target generate_dataset model_tubes evaluate view
 
 for set in a b; do
   echo
@@ -19,8 +19,9 @@ done
 
 echo
 build/bin/evaluate "$output/results_a" "$output/results_b" --html "$output/report.html"
+build/bin/view "$output/results_a" --html "$output/view.html" > /dev/null
 
 echo
 echo "The data sets are in $output/set_a and $output/set_b, what was found in $output/results_a and results_b."
 echo "Look at $output/set_a/A10/001/preview.png; its point cloud is cloud.pcd beside it."
-echo "The report, for a browser: $output/report.html"
+echo "For a browser: the report, $output/report.html, and what was found in set A, to turn in 3D: $output/view.html"

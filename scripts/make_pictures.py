@@ -259,17 +259,36 @@ def fit(picture, size):
     return sheet
 
 
-def draw_tutorial_report(work):
+def screenshot(work, page, size):
+    """What Chromium shows of the page, drawing WebGL by software; nothing without Chromium."""
     browser = shutil.which("chromium") or shutil.which("google-chrome")
     if not browser:
-        print("no Chromium here: tutorial_report.png stays")
-        return
+        print(f"no Chromium here: no picture of {page.name}")
+        return None
+    shot = work.folder / "screenshot.png"
+    subprocess.run([browser, "--headless", "--no-sandbox", "--hide-scrollbars", "--use-gl=angle", "--use-angle=swiftshader",
+                    "--enable-unsafe-swiftshader", f"--window-size={size[0]},{size[1]}", "--virtual-time-budget=5000",
+                    f"--screenshot={shot}", page.resolve().as_uri()], check=True, stderr=subprocess.DEVNULL)
+    return Image.open(shot).resize((size[0] * 3 // 4, size[1] * 3 // 4), Image.Resampling.LANCZOS)
+
+
+def draw_tutorial_report(work):
     work.results()
     report = work.run("report.html", "evaluate", "results", "--html", "report.html", "--quiet")
-    shot = work.folder / "report.png"
-    subprocess.run([browser, "--headless", "--no-sandbox", "--hide-scrollbars", "--window-size=1100,900",
-                    f"--screenshot={shot}", report.resolve().as_uri()], check=True, stderr=subprocess.DEVNULL)
-    save(Image.open(shot).resize((825, 675), Image.Resampling.LANCZOS), "tutorial_report.png", 64)
+    if picture := screenshot(work, report, (1100, 900)):
+        save(picture, "tutorial_report.png", 64)
+
+
+def draw_tutorial_view(work):
+    """With a tube chosen, whose numbers stand beside it."""
+    work.model()
+    page = work.run("view.html", "view", "one")
+    choice = """<script>document.querySelector("select").selectedIndex = 5;
+        document.querySelector("select").dispatchEvent(new Event("change"));</script>"""
+    chosen = work.folder / "chosen.html"
+    chosen.write_text(page.read_text().replace("</body>", choice + "</body>"))
+    if picture := screenshot(work, chosen, (1100, 800)):
+        save(picture, "tutorial_view.png")
 
 
 def draw_modeling(work):

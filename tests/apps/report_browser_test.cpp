@@ -84,6 +84,7 @@ TEST_F(ReportInBrowser, OpensWithoutErrorsAndShowsEverything) {
   EXPECT_EQ(count(html, "<svg"), 4U);
   EXPECT_EQ(count(html, "class=\"verdict\""), 2U);       // one a method
   EXPECT_EQ(count(html, "data:image/png;base64,"), 6U);  // the one scene whose clouds were kept, by two methods
+  EXPECT_EQ(count(html, "3D view: arrows"), 2U);
 }
 
 TEST_F(ReportInBrowser, FitsAPhoneAndShowsAPictureEarly) {

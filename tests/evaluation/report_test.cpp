@@ -3,6 +3,7 @@
 #include <regex>
 
 #include "support/synthetic_results.hpp"
+#include "tubebin/core/error.hpp"
 #include "tubebin/evaluation/html_report.hpp"
 #include "tubebin/evaluation/paper_figures.hpp"
 #include "tubebin/evaluation/result_plots.hpp"
@@ -205,6 +206,26 @@ TEST(Report, PicturesTheWorstRunsOfDifferentScenes) {
   EXPECT_EQ(runs[0]->key.name(), "B20/001 centerline 0.1");
   EXPECT_EQ(runs[1]->key.name(), "B20/002 centerline 0.1");
   EXPECT_EQ(runs[2]->key.name(), "B15/001 centerline 0.1");
+}
+
+std::size_t occurrences(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(Report, ShowsTheWorstAndTheChosenScenesInThreeDimensions) {
+  const Evaluation evaluation = synthetic_evaluation(paper_sweep());
+  const ReadPoints read = [](const RunScore&) {
+    return LabelledPoints{{{0.0F, 0.0F, 0.1F}, {0.1F, 0.0F, 0.1F}}, {1, 2}, {1, 1}, {}};
+  };
+  const std::string html = format_html_report({evaluation, nullptr, read, {"A5/002"}});
+  EXPECT_EQ(occurrences(html, "<figure class=\"view\""), 4U);
+  EXPECT_EQ(occurrences(html, "<figure class=\"view\" data-title=\"A5/002 centerline 0.1\""), 1U);
+  EXPECT_EQ(occurrences(html, "Permission is hereby granted"),
+            1U);  // the library that draws them, once, and its license
+  EXPECT_EQ(occurrences(format_html_report({evaluation}), "Permission is hereby granted"), 0U);
+  EXPECT_THROW(format_html_report({evaluation, nullptr, read, {"A5/999"}}), ConfigError);
 }
 
 TEST(ScenePicture, ShowsTubesLabelsAndErrors) {

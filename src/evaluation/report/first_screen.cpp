@@ -8,7 +8,9 @@
 
 #include "evaluation/report/base64.hpp"
 #include "evaluation/report/verdict.hpp"
+#include "tubebin/core/error.hpp"
 #include "tubebin/evaluation/plot.hpp"
+#include "tubebin/evaluation/scene_view.hpp"
 #include "tubebin/evaluation/table.hpp"
 
 namespace tubebin::evaluation {
@@ -65,7 +67,8 @@ std::string scene_html(const ReportInput& input, const RunScore& run) {
   const ScenePicture picture = draw_scene(*points);
   return html + "<div class=\"pictures\">\n" + image(picture.truth, picture, "ground truth") +
          image(picture.labels, picture, "found, in the colour of the matched tube; grey: no tube's") +
-         image(picture.errors, picture, "wrong points orange, points without a label black") + "</div></div>\n";
+         image(picture.errors, picture, "wrong points orange, points without a label black") + "</div>\n" +
+         view_figure({run.key.name(), *points}) + "</div>\n";
 }
 
 }  // namespace
@@ -87,9 +90,9 @@ std::string verdict_html(const Evaluation& evaluation) {
   return html;
 }
 
-std::string worst_scenes_html(const ReportInput& input) {
+std::string scenes_html(const ReportInput& input, const std::vector<const RunScore*>& runs) {
   std::string html;
-  for (const RunScore* run : pictured_runs(input.evaluation.runs)) html += scene_html(input, *run);
+  for (const RunScore* run : runs) html += scene_html(input, *run);
   return html;
 }
 
@@ -125,6 +128,23 @@ std::vector<const RunScore*> pictured_runs(const std::vector<RunScore>& runs) {
     std::set<std::string> scenes;
     for (const RunScore* run : members)
       if (scenes.size() < most && scenes.insert(run->key.scene).second) chosen.push_back(run);
+  }
+  return chosen;
+}
+
+std::vector<const RunScore*> runs_of_scenes(const std::vector<RunScore>& runs, const std::vector<std::string>& scenes) {
+  std::vector<const RunScore*> chosen;
+  for (const std::string& scene : scenes) {
+    std::map<std::string, const RunScore*> worst;
+    for (const RunScore& run : runs) {
+      if (run.key.scene != scene || run.failed) continue;
+      const RunScore*& so_far = worst[run.key.method];
+      if (so_far == nullptr || run.micro_recall < so_far->micro_recall) so_far = &run;
+    }
+    if (worst.empty())
+      throw_config_error("scene '{}' has no result{}", scene,
+                         runs.empty() ? "" : fmt::format("; one that has is {}", runs.front().key.scene));
+    for (const auto& [method, run] : worst) chosen.push_back(run);
   }
   return chosen;
 }

@@ -9,8 +9,8 @@ namespace tubebin::evaluation {
 
 /// In words, with a histogram over the scenes beside them: one block a method.
 std::string verdict_html(const Evaluation& evaluation);
-/// Pictures of the worst scenes of each method with the reasons.
-std::string worst_scenes_html(const ReportInput& input);
+/// Pictures and 3D views of the runs' scenes with the reasons.
+std::string scenes_html(const ReportInput& input, const std::vector<const RunScore*>& runs);
 /// One row a method and scene, the worst first.
 std::string scene_table_html(const Evaluation& evaluation);
 

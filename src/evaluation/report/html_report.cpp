@@ -8,6 +8,7 @@
 #include "evaluation/report/side_by_side.hpp"
 #include "tubebin/evaluation/result_plots.hpp"
 #include "tubebin/evaluation/result_tables.hpp"
+#include "tubebin/evaluation/scene_view.hpp"
 
 extern const char* const kReportJs;  // data/report/report.js
 
@@ -87,20 +88,22 @@ std::string paper_html(const ReportInput& input, const std::vector<GroupSummary>
 std::string format_html_report(const ReportInput& input) {
   const Evaluation& evaluation = input.evaluation;
   const std::vector<GroupSummary> groups = summarize(evaluation.runs);
-  const Section sections[] = {{"worst", "Worst scenes", worst_scenes_html(input)},
-                              {"side_by_side", "Side by side", side_by_side_html(evaluation)},
-                              {"scenes", "All scenes", scene_table_html(evaluation)},
-                              {"measures", "Measures", measures_html(evaluation)},
-                              {"plots", "Plots", plots_html(input, groups)},
-                              {"paper", "Against the paper", paper_html(input, groups)},
-                              {"tables", "Tables",
-                               (input.generation == nullptr ? tables_html(condition_tables(groups)) : "") +
-                                   tables_html(detail_tables(evaluation, groups))},
-                              {"configuration", "Configuration",
-                               evaluation.configuration.empty() ? ""
-                                                                : fmt::format("<pre tabindex=\"0\">{}</pre>\n",
-                                                                              escape_html(evaluation.configuration))}};
-  std::string html = page_head("tubebin evaluation", "");
+  const Section sections[] = {
+      {"chosen", "Chosen scenes", scenes_html(input, runs_of_scenes(evaluation.runs, input.scenes))},
+      {"worst", "Worst scenes", scenes_html(input, pictured_runs(evaluation.runs))},
+      {"side_by_side", "Side by side", side_by_side_html(evaluation)},
+      {"scenes", "All scenes", scene_table_html(evaluation)},
+      {"measures", "Measures", measures_html(evaluation)},
+      {"plots", "Plots", plots_html(input, groups)},
+      {"paper", "Against the paper", paper_html(input, groups)},
+      {"tables", "Tables",
+       (input.generation == nullptr ? tables_html(condition_tables(groups)) : "") +
+           tables_html(detail_tables(evaluation, groups))},
+      {"configuration", "Configuration",
+       evaluation.configuration.empty()
+           ? ""
+           : fmt::format("<pre tabindex=\"0\">{}</pre>\n", escape_html(evaluation.configuration))}};
+  std::string html = page_head("tubebin evaluation", view_style());
   html += fmt::format("<header><h1>How well the tubes were found</h1>\n<p class=\"soft\">{}, tubebin {}</p>\n<nav>",
                       escape_html(evaluation.source), TUBEBIN_VERSION);
   for (const Section& section : sections)
@@ -108,6 +111,7 @@ std::string format_html_report(const ReportInput& input) {
   html += "</nav></header>\n<main>\n<section id=\"verdict\">" + verdict_html(evaluation) + gaps_html(evaluation) +
           "</section>\n";
   for (const Section& section : sections) html += section_html(section);
+  if (html.find("class=\"view\"") != std::string::npos) html += view_script();
   return html + fmt::format("</main>\n<script>\n{}</script>\n</body>\n</html>\n", kReportJs);
 }
 
