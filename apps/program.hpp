@@ -7,10 +7,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <new>
 #include <optional>
 #include <string>
 
+#include "help_text.hpp"
 #include "standard_streams.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/text_scan.hpp"
@@ -50,13 +52,6 @@ inline CLI::Validator positive_number(const char* right) {
   return number_of<double>(right, std::numeric_limits<double>::denorm_min());
 }
 
-/// Every option that CLI11 converts is a number.
-inline std::string describe_failure(const CLI::App* app, const CLI::Error& error) {
-  std::string text = CLI::FailureMessage::simple(app, error);
-  if (error.get_name() == "ConversionError") text.insert(text.find('\n'), "; a number is needed there");
-  return text;
-}
-
 /// Paths go into JSON files and reports, which are UTF-8. Throws ConfigError.
 inline void require_utf8(int argc, char** argv) {
   for (int i = 1; i < argc; ++i)
@@ -76,6 +71,8 @@ int run_program(const char* name, CLI::App& app, int argc, char** argv, const Ru
   try {
     require_utf8(argc, argv);
     read_integers_as_decimal(app);
+    app.name(name);
+    app.formatter(std::make_shared<HelpInWords>());
     app.failure_message(describe_failure);
     app.parse(argc, argv);
     code = run();

@@ -1,6 +1,9 @@
 // Numbers on the command line that are none: the message names the option, the word, and what would be right.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <sstream>
+
 #include "support/program.hpp"
 
 namespace tubebin::testing {
@@ -41,6 +44,31 @@ TEST(CommandLine, SaysWhatNumberWouldBeRight) {
     EXPECT_THAT(result.error, AllOf(HasSubstr(wrong.option), HasSubstr(wrong.word), HasSubstr(wrong.right)));
     EXPECT_LT(result.error.size(), 200u);
   }
+}
+
+TEST(CommandLine, HelpIsInWords) {
+  for (const std::string program :
+       {"generate_dataset", "model_tubes", "calibrate_modeler", "export_dataset", "evaluate", "view"}) {
+    SCOPED_TRACE(program);
+    const ProgramResult result = Program({program_path(program), "--help"}).wait();
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_THAT(result.out, HasSubstr("\nUsage: " + program + " [OPTIONS]"));
+    for (const char* notation : {"INT", "FLOAT", "TEXT", " in [", "REQUIRED", "Excludes", "Needs", "e+0", " x 3"})
+      EXPECT_THAT(result.out, ::testing::Not(HasSubstr(notation)));
+    const std::size_t options = result.out.find("Options:");
+    std::istringstream lines(result.out.substr(options, result.out.find("\n\n", options) - options));
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 111u) << line;
+  }
+  EXPECT_THAT(Program({program_path("export_dataset"), "--help"}).wait().out,
+              AllOf(HasSubstr("bop|coco|npz|ply|sdf"), HasSubstr("1 to 1024; default ")));
+}
+
+TEST(CommandLine, AWrongCallIsToldShortly) {
+  const ProgramResult result = Program({program_path("export_dataset"), "--fromat", "bop"}).wait();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 3) << result.error;
+  EXPECT_THAT(result.error, AllOf(::testing::StartsWith("export_dataset: "), HasSubstr("\nUsage: export_dataset "),
+                                  HasSubstr("\nSee export_dataset --help.\n")));
 }
 
 }  // namespace
