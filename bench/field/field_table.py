@@ -5,7 +5,8 @@
 
 FOLDER has either depth images with labels (KIND_N.npz: depth, label, depth_of_0, depth_step, hfov, world_from_camera, frame,
 unit, shift, yaw_deg), or is a data set of generate_dataset (SET/CASE/cloud.pcd with its own labels); its clouds are modelled
-without their scene.json, and with --scene beside it. OPTIONs go to model_tubes.
+without their scene.json, and with --scene beside it; with --calibration-error the cloud has moved by so many millimetres and degrees
+in a random direction, and scene.json has not. OPTIONs go to model_tubes.
 
 recall: share of all tube points of the cloud that carry their tube's label, labels matched one to one (Hungarian).
 false: points of anything else that carry a tube's label, as a share of the tube points. seconds: of all steps, without reading
@@ -14,7 +15,7 @@ and writing. Needs numpy and scipy.
 --check exits with 1 where a cloud's recall is below 0.95 or its false points are above 2 %, with 77 where FOLDER, numpy or
 scipy is missing.
 """
-import argparse, json, os, shutil, subprocess, sys, tempfile
+import argparse, json, re, shutil, subprocess, sys, tempfile
 from pathlib import Path
 
 try:
@@ -67,17 +68,34 @@ def write_organized(points, viewpoint, path):
     Path(path).write_bytes(header.encode() + out.tobytes())
 
 
-def clouds(folder, work, with_scene):
+def move(path, to, millimetres, degrees, random):
+    """Writes the cloud and its viewpoint moved and turned about the world's origin."""
+    raw, points = path.read_bytes(), read_pcd(path).copy()
+    header = raw[:raw.index(b'\n', raw.index(b'\nDATA ') + 1) + 1].decode()
+    axis, shift = (v / np.linalg.norm(v) for v in random.normal(size=(2, 3)))
+    cross = np.cross(np.eye(3), -axis)
+    angle = np.radians(degrees)
+    turn = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross  # Rodrigues
+    moved = lambda p: p @ turn.T + millimetres / 1000 * shift
+    points['x'], points['y'], points['z'] = moved(np.stack([points['x'], points['y'], points['z']], -1).astype(float)).T
+    viewpoint = re.search(r'VIEWPOINT ((\S+ ){3})', header)[1]
+    new = ' '.join(f'{x:.6f}' for x in moved(np.array(viewpoint.split(), float)))
+    to.write_bytes(header.replace(f'VIEWPOINT {viewpoint}', f'VIEWPOINT {new} ').encode() + points.tobytes())
+
+
+def clouds(folder, work, with_scene, calibration_error):
     """(kind, cloud file, true label of each of its points, factor to metres) of every cloud."""
     for path in sorted(Path(folder).glob('*.npz')):
         image = np.load(path)
         write_pcd(image, work / 'cloud.pcd')
         yield path.stem.rsplit('_', 1)[0], work / 'cloud.pcd', image['label'].ravel().astype(int), float(image['unit'])
+    random = np.random.default_rng(5)
     for path in sorted(Path(folder).glob('*/*/cloud.pcd')):
         labels = read_pcd(path)['label'].astype(int)
-        if not with_scene:
-            shutil.copy(path, work / 'cloud.pcd')
-        yield path.parent.parent.name, path if with_scene else work / 'cloud.pcd', labels, 1.0
+        if with_scene or any(calibration_error):
+            shutil.copy(path.parent / 'scene.json', work)
+        move(path, work / 'cloud.pcd', *calibration_error, random)
+        yield path.parent.parent.name, work / 'cloud.pcd', labels, 1.0
 
 
 def model(program, cloud, unit, options, work):
@@ -114,6 +132,7 @@ def main():
     parser.add_argument('--method', default='centerline', choices=['centerline', 'region_growing'])
     parser.add_argument('--only', nargs='*', default=[])
     parser.add_argument('--scene', action='store_true', help='leave scene.json beside the clouds of a data set')
+    parser.add_argument('--calibration-error', nargs=2, type=float, default=(0.0, 0.0), metavar=('MM', 'DEG'))
     parser.add_argument('--check', action='store_true', help='fail where a cloud is far from the rest')
     given = parser.parse_args(arguments)
     if given.check and not Path(given.folder).is_dir():
@@ -121,7 +140,7 @@ def main():
         sys.exit(77)
     kinds = {}
     with tempfile.TemporaryDirectory() as work:
-        for kind, cloud, truth, unit in clouds(given.folder, Path(work), given.scene):
+        for kind, cloud, truth, unit in clouds(given.folder, Path(work), given.scene, given.calibration_error):
             if given.only and kind not in given.only:
                 continue
             full, seconds = model(given.model_tubes, cloud, unit, ['--method', given.method, *options], Path(work))
