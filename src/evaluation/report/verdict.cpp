@@ -23,7 +23,7 @@ const char* how_many(double detected) {
   return detected > 0.0 ? "less than half of the tubes" : "no tube";
 }
 
-std::string percent(double share) { return percent_cell(share, 2).text; }
+std::string percent_text(double share) { return percent_cell(share, 2).text; }
 
 /// Scenes are drawn anew, not runs: the runs of a scene at several ratios are alike.
 std::string how_sure(std::span<const SceneSummary> scenes) {
@@ -32,7 +32,7 @@ std::string how_sure(std::span<const SceneSummary> scenes) {
   for (const SceneSummary& scene : scenes) values.push_back(scene.micro_recall);
   const Interval interval = bootstrap_mean(values, kIntervalSeed);
   return fmt::format("Other scenes of this kind would give {} to {} (95 % interval of the mean over {} scenes).{}",
-                     percent(interval.low), percent(interval.high), scenes.size(),
+                     percent_text(interval.low), percent_text(interval.high), scenes.size(),
                      scenes.size() < kFewScenes ? " So few scenes leave much to chance." : "");
 }
 
@@ -68,11 +68,11 @@ std::optional<std::pair<Value, double>> worst_value(std::span<const RunScore* co
 std::string worst_conditions(std::span<const RunScore* const> runs) {
   std::vector<std::string> parts;
   if (const auto set = worst_value<std::string>(runs, [](const RunScore& run) { return run.key.set; }))
-    parts.push_back(fmt::format("on set {} ({})", set->first, percent(set->second)));
+    parts.push_back(fmt::format("on set {} ({})", set->first, percent_text(set->second)));
   if (const auto tubes = worst_value<int>(runs, [](const RunScore& run) { return run.key.tubes; }))
-    parts.push_back(fmt::format("with {} ({})", count_of_tubes(tubes->first), percent(tubes->second)));
+    parts.push_back(fmt::format("with {} ({})", count_of_tubes(tubes->first), percent_text(tubes->second)));
   if (const auto ratio = worst_value<double>(runs, [](const RunScore& run) { return run.key.ratio; }))
-    parts.push_back(fmt::format("at ratio {} ({})", ratio->first, percent(ratio->second)));
+    parts.push_back(fmt::format("at ratio {} ({})", ratio->first, percent_text(ratio->second)));
   return parts.empty() ? "" : fmt::format(" It is lowest {}.", fmt::join(parts, ", "));
 }
 
@@ -83,7 +83,7 @@ VerdictText describe_results(std::span<const RunScore* const> runs, std::span<co
   VerdictText text;
   text.headline = fmt::format("{} finds {}", all.key.method, how_many(all.pooled.detected));
   text.how_good = fmt::format("{} of the points carry the right tube (micro-recall), {} of the tubes are found whole.",
-                              percent(all.micro_recall.mean), percent(all.pooled.detected));
+                              percent_text(all.micro_recall.mean), percent_text(all.pooled.detected));
   text.how_sure = how_sure(scenes);
   text.where_it_fails = reasons(scenes) + worst_conditions(runs);
   return text;

@@ -18,10 +18,10 @@ constexpr std::size_t kMostColors = 1024;
 constexpr std::size_t kMostKinds = 65536;
 constexpr int kHeightBands = 64;
 // Of the page's style: what needs no attention, a segment that is no tube's, points without a label.
-constexpr const char* kQuiet = "--quiet";
-constexpr const char* kNoTube = "--soft";
-constexpr const char* kNoLabel = "--ink";
-constexpr const char* kWrong = "#d55e00";  // Okabe & Ito's vermilion, as in the pictures
+constexpr const char* kStyleOfBackground = "--quiet";
+constexpr const char* kStyleOfNoTube = "--soft";
+constexpr const char* kStyleOfNoLabel = "--ink";
+constexpr const char* kStyleOfWrong = "#d55e00";  // Okabe & Ito's vermilion, as in the pictures
 
 using Kind = std::pair<SegmentId, SegmentId>;  // true and found tube
 using Colors = std::map<SegmentId, std::string>;
@@ -61,7 +61,7 @@ Match match_tubes(const LabelledPoints& points) {
   match.true_colors = own_colors(points.truth, points.true_tubes.size());
   match.found_colors = own_colors(points.predicted, points.found_tubes.size());
   if (!match.has_truth || !match.has_found) return match;
-  for (auto& [id, color] : match.found_colors) color = kNoTube;
+  for (auto& [id, color] : match.found_colors) color = kStyleOfNoTube;
   const Contingency contingency = count_pairs(points.truth, points.predicted, 0);
   const Matching matching = match_segments(contingency);
   for (std::size_t row = 0; row < matching.column_of_row.size(); ++row) {
@@ -69,7 +69,7 @@ Match match_tubes(const LabelledPoints& points) {
     const SegmentId truth = contingency.truth_ids[row];
     const SegmentId found = contingency.predicted_ids[static_cast<std::size_t>(matching.column_of_row[row])];
     match.truth_of_found[found] = truth;
-    match.found_colors[found] = truth == 0 ? kQuiet : match.true_colors[truth];
+    match.found_colors[found] = truth == 0 ? kStyleOfBackground : match.true_colors[truth];
   }
   for (const TubeScore& score : score_tubes(contingency, matching).tubes) match.scores[score.truth_id] = score;
   return match;
@@ -167,21 +167,24 @@ OrderedJson layers_of(const Match& match, const std::vector<Kind>& kinds) {
   OrderedJson layers = OrderedJson::array();
   if (match.has_truth)
     layers.push_back(layer(
-        "truth", kinds, [&](const Kind& kind) { return kind.first == 0 ? kQuiet : match.true_colors.at(kind.first); },
+        "truth", kinds,
+        [&](const Kind& kind) { return kind.first == 0 ? kStyleOfBackground : match.true_colors.at(kind.first); },
         true_tube));
   if (match.has_found)
     layers.push_back(layer(
         "found", kinds,
         [&](const Kind& kind) {
-          return kind.second != kNullId ? match.found_colors.at(kind.second) : kind.first == 0 ? kQuiet : kNoLabel;
+          return kind.second != kNullId ? match.found_colors.at(kind.second)
+                 : kind.first == 0      ? kStyleOfBackground
+                                        : kStyleOfNoLabel;
         },
         found_tube));
   if (match.has_truth && match.has_found)
     layers.push_back(layer(
         "errors", kinds,
-        [&](const Kind& kind) { return match.is_correct(kind)   ? kQuiet
-                                       : kind.second == kNullId ? kNoLabel
-                                                                : kWrong; },
+        [&](const Kind& kind) {
+          return match.is_correct(kind) ? kStyleOfBackground : kind.second == kNullId ? kStyleOfNoLabel : kStyleOfWrong;
+        },
         true_tube));
   if (layers.empty())  // by height: from blue below to yellow above
     layers.push_back(layer(
