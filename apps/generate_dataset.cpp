@@ -25,6 +25,8 @@ Examples:
       all scenes of the paper's set A, on all cores
   generate_dataset config/set_b.yaml --output small --tubes 1,5,10-12 --cases 3 --preview
       three scenes each of 1, 5, 10, 11 and 12 tubes, with pictures
+  generate_dataset config/set_a.yaml --output emptied --tubes 10 --empty 9
+      piles that are taken apart tube by tube: A10/007/step_00 to A10/007/step_09
   generate_dataset config/set_a.yaml --output /shared/dataset_a --shard 2/4
       the second of four shards, which four machines make at once; in a job array of Slurm, AWS Batch or Kubernetes,
       --shard is not needed (docs/scale_out.md)
@@ -46,6 +48,7 @@ struct Arguments {
   std::string output;
   std::string tubes;
   std::optional<int> cases;
+  std::optional<int> empty;
   std::optional<std::uint64_t> seed;
   int jobs = jobs::available_cores();
   std::string shard;
@@ -69,6 +72,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->type_name("1,5,10-15");
   app.add_option("--cases", arguments.cases, "Scenes for each number of tubes, instead of the configuration's")
       ->check(CLI::Range(1, 1000000));
+  app.add_option("--empty", arguments.empty, "Tubes to lift out of each pile, a scene after each (sequence.lifts)")
+      ->check(CLI::Range(1, 10000));
   app.add_option("--seed", arguments.seed, "Seed, instead of the configuration's")->check(whole_number());
   app.add_option("-j,--jobs", arguments.jobs, "Worker processes")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("--shard", arguments.shard,
@@ -111,6 +116,7 @@ dataset::DatasetConfig resolve_config(const Arguments& arguments) {
   dataset::DatasetConfig config = dataset::load_config(arguments.config);
   if (!arguments.tubes.empty()) config.tubes = dataset::parse_tube_counts(arguments.tubes);
   if (arguments.cases) config.cases = *arguments.cases;
+  if (arguments.empty) config.sequence.lifts = *arguments.empty;
   if (arguments.seed) config.seed = *arguments.seed;
   if (arguments.preview) config.output.preview = true;
   check(config, whole_file("command line"));
@@ -147,7 +153,11 @@ int make_scenes(dataset::DatasetFolder& folder, const std::vector<dataset::Scene
                report.complete_before + report.made, scenes.size());
     return 128 + report.signal;
   }
-  fmt::print("{}", dataset::format_timing_table(folder.manifest(), scenes, paper_seconds(folder.config().set)));
+  // The paper's scenes are a drop each.
+  const bool is_emptied = folder.config().sequence.lifts > 0;
+  fmt::print("{}",
+             dataset::format_timing_table(folder.manifest(), scenes,
+                                          is_emptied ? dataset::SecondsByTubes{} : paper_seconds(folder.config().set)));
   return static_cast<int>(report.failed.empty() ? ExitCode::done : ExitCode::incomplete);
 }
 

@@ -33,10 +33,13 @@ void check_tubes_once(const DatasetConfig& config, const KeyPlaces& places) {
 constexpr std::size_t kScenesMax = 5'000'000;
 
 void check_scene_count(const DatasetConfig& config, const KeyPlaces& places) {
-  const std::size_t scenes = config.tubes.size() * static_cast<std::size_t>(config.cases);
+  const std::size_t scenes = config.tubes.size() * static_cast<std::size_t>(config.cases) *
+                             static_cast<std::size_t>(config.sequence.lifts + 1);
   if (scenes > kScenesMax)
-    places.fail("cases", fmt::format("{} for each of {} numbers of tubes are {} scenes; valid: up to {} together",
-                                     config.cases, config.tubes.size(), scenes, kScenesMax));
+    places.fail(
+        "cases",
+        fmt::format("{} for each of {} numbers of tubes, and their steps, are {} scenes; valid: up to {} together",
+                    config.cases, config.tubes.size(), scenes, kScenesMax));
 }
 
 void check_version(const DatasetConfig& config, const KeyPlaces& places) {
@@ -116,6 +119,16 @@ void describe(Fields& fields, DatasetConfig& config) {
                [&](Fields& inner) { describe(inner, config.bin); });
   fields.group("physics", "the drop and the checks of its result",
                [&](Fields& inner) { describe(inner, config.physics); });
+  fields.group("sequence", "emptying the bin: tubes are lifted out one by one", [&](Fields& inner) {
+    inner.integer("lifts", config.sequence.lifts, {0, 10000}, "",
+                  "tubes lifted out of each pile, but for the last, with a scene before the first and after each: "
+                  "A10/007/step_00, step_01, ...; 0 makes one scene of each pile, A10/007");
+    inner.choice(
+        "rule", config.sequence.rule, {"top", "random"},
+        "which tube is next: of those with none above them (of all, where there are none) the one whose centre "
+        "of mass is highest, or any");
+    inner.number("speed", config.sequence.lift.speed, {0.001, 10.0}, "m/s", "at which it is pulled straight up");
+  });
   describe_scanners(fields, config);
   fields.group("output", "what is written for each scene", [&](Fields& inner) {
     inner.choice("format", config.output.format, {"pcd_binary", "pcd_compressed", "pcd_ascii", "ply_binary"},

@@ -4,7 +4,12 @@
 #include <chrono>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <span>
+#include <sstream>
+#include <utility>
 
+#include "dataset/pile.hpp"
 #include "dataset/scene_packer.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
 #include "tubebin/jobs/batch.hpp"
@@ -16,13 +21,25 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// In a worker process: one attempt at a scene, whose folder is complete when `finish` has returned.
-jobs::AttemptResult make_scene(const DatasetFolder& folder, const SceneId& id, int attempt) {
-  GeneratedScene scene = generate_scene(folder.config(), id, attempt);
-  if (!scene.failure.empty()) return jobs::failed_attempt(scene.failure, scene.failure_detail);
+/// Scenes of one pile, which one job makes, as a range of the list of scenes.
+struct PileScenes {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
 
+std::vector<PileScenes> group_by_pile(const std::vector<SceneId>& scenes) {
+  std::vector<PileScenes> groups;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (i > 0 && scenes[i].pile() == scenes[i - 1].pile()) ++groups.back().end;
+    else groups.push_back({i, i + 1});
+  }
+  return groups;
+}
+
+/// Writes a scene, whose folder is complete when the returned function has returned its line of the manifest.
+std::function<std::string()> begin_scene(const DatasetFolder& folder, const SceneId& id, GeneratedScene scene) {
   ManifestRecord record{.id = id.name(),
-                        .tubes = id.tubes,
+                        .tubes = id.tubes_in_bin(),
                         .seed = scene.content.record.seed,
                         .rejected = {},
                         .seconds = std::move(scene.seconds),
@@ -31,11 +48,29 @@ jobs::AttemptResult make_scene(const DatasetFolder& folder, const SceneId& id, i
   const auto start = std::chrono::steady_clock::now();
   const auto complete = folder.store().begin_write(record.id, scene.content);
   record.seconds["write"] = seconds_since(start);
-  return jobs::successful_attempt([complete, record]() mutable {
+  return [complete, record]() mutable {
     const auto wait_start = std::chrono::steady_clock::now();
     record.files = complete();
     record.seconds["wait_for_disk"] = seconds_since(wait_start);
     return format_manifest_record(record);
+  };
+}
+
+/// In a worker process: one attempt at what is not complete of a pile's scenes. All are done when `finish` has returned.
+jobs::AttemptResult make_scenes(const DatasetFolder& folder, std::span<const SceneId> scenes, int attempt) {
+  const Piles made = make_piles(folder.config(), scenes.front(), attempt, std::max(scenes.back().step, 0));
+  if (!made.failure.empty()) return jobs::failed_attempt(made.failure, made.failure_detail);
+  std::vector<std::function<std::string()>> written;
+  for (const SceneId& id : scenes) {
+    if (folder.is_complete(id.name())) continue;
+    GeneratedScene scene = show_pile(folder.config(), id, made.piles[static_cast<std::size_t>(std::max(id.step, 0))]);
+    if (!scene.failure.empty()) return jobs::failed_attempt(scene.failure, scene.failure_detail);
+    written.push_back(begin_scene(folder, id, std::move(scene)));
+  }
+  return jobs::successful_attempt([written] {
+    std::string lines;
+    for (const auto& finish : written) lines += finish() + '\n';
+    return lines;
   });
 }
 
@@ -49,12 +84,21 @@ std::string describe_failure(const SceneId& id, const jobs::JobOutcome& outcome)
                      fmt::join(parts, ", "), last.for_people());
 }
 
-void record_scene(DatasetFolder& folder, const jobs::JobOutcome& outcome) {
-  ManifestRecord record = parse_manifest_record(outcome.text);
-  record.rejected = outcome.failed;
-  const auto preview = record.seconds.find("preview");
-  record.seconds["total"] = outcome.seconds - (preview == record.seconds.end() ? 0.0 : preview->second);
-  folder.manifest().append(record);
+/// The first of a pile's scenes tells of the attempts before; all share the time. Returns their names.
+std::set<std::string> record_scenes(DatasetFolder& folder, const jobs::JobOutcome& outcome) {
+  std::set<std::string> names;
+  std::istringstream lines(outcome.text);
+  const auto scenes = static_cast<double>(std::ranges::count(outcome.text, '\n'));
+  std::vector<jobs::FailedAttempt> rejected = outcome.failed;
+  for (std::string line; std::getline(lines, line);) {
+    ManifestRecord record = parse_manifest_record(line);
+    record.rejected = std::exchange(rejected, {});
+    const auto preview = record.seconds.find("preview");
+    record.seconds["total"] = outcome.seconds / scenes - (preview == record.seconds.end() ? 0.0 : preview->second);
+    folder.manifest().append(record);
+    names.insert(record.id.str());
+  }
+  return names;
 }
 
 /// Scenes that were made and are not there: somebody removed them meanwhile.
@@ -77,32 +121,47 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
   GenerationReport report;
   std::optional<ScenePacker> packer;
   if (!pack.empty()) packer.emplace(folder, scenes, pack);
+  const std::vector<PileScenes> piles = group_by_pile(scenes);
+  const auto complete_scenes = [&](const PileScenes& pile) {
+    std::size_t count = 0;
+    for (std::size_t i = pile.begin; i < pile.end; ++i) count += folder.is_complete(scenes[i].name());
+    return count;
+  };
+  for (const PileScenes& pile : piles) report.complete_before += complete_scenes(pile);
   std::vector<std::size_t> made;
-  const jobs::BatchReport done =
-      jobs::run_batch({.size = scenes.size(),
-                       .noun = "scenes",
-                       .pool = {.workers = jobs,
-                                .attempts_max = folder.config().attempts_max,
-                                .attempt_time_limit = folder.config().attempt_time_limit},
-                       .progress = progress_style,
-                       .is_done = [&](std::size_t job) { return folder.is_complete(scenes[job].name()); },
-                       .work = [&](std::size_t job, int attempt) { return make_scene(folder, scenes[job], attempt); },
-                       .on_finished =
-                           [&](const jobs::JobOutcome& outcome) {
-                             if (outcome.succeeded) made.push_back(outcome.job);
-                             if (outcome.succeeded) record_scene(folder, outcome);
-                             else report.failed.push_back(describe_failure(scenes[outcome.job], outcome));
-                             if (packer && outcome.succeeded) packer->add(outcome.job);
-                             else if (packer) packer->give_up(outcome.job);
-                           },
-                       .on_failed_attempt =
-                           [&](std::size_t, const jobs::FailedAttempt& attempt) { ++report.rejects[attempt.reason]; }});
+  const jobs::BatchReport done = jobs::run_batch(
+      {.size = piles.size(),
+       .noun = piles.size() == scenes.size() ? "scenes" : "piles",
+       .pool = {.workers = jobs,
+                .attempts_max = folder.config().attempts_max,
+                .attempt_time_limit = folder.config().attempt_time_limit},
+       .progress = progress_style,
+       .is_done = [&](std::size_t job) { return complete_scenes(piles[job]) == piles[job].end - piles[job].begin; },
+       .work =
+           [&](std::size_t job, int attempt) {
+             const PileScenes& pile = piles[job];
+             return make_scenes(folder, std::span(scenes).subspan(pile.begin, pile.end - pile.begin), attempt);
+           },
+       .on_finished =
+           [&](const jobs::JobOutcome& outcome) {
+             const PileScenes& pile = piles[outcome.job];
+             if (!outcome.succeeded) report.failed.push_back(describe_failure(scenes[pile.begin].pile(), outcome));
+             std::set<std::string> recorded;
+             if (outcome.succeeded) recorded = record_scenes(folder, outcome);
+             for (std::size_t i = pile.begin; i < pile.end; ++i) {
+               const bool is_made = recorded.contains(scenes[i].name());
+               if (is_made) made.push_back(i);
+               if (packer && is_made) packer->add(i);
+               else if (packer && !folder.is_complete(scenes[i].name())) packer->give_up(i);
+             }
+           },
+       .on_failed_attempt = [&](std::size_t,
+                                const jobs::FailedAttempt& attempt) { ++report.rejects[attempt.reason]; }});
   if (packer) packer->finish(done.signal == 0);
   folder.restore_config();
   add_lost(report, folder, scenes, made);
-  report.complete_before = done.done_before;
   report.signal = done.signal;
-  report.made = done.made;
+  report.made = made.size();
   report.seconds = done.seconds;
   return report;
 }

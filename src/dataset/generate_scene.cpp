@@ -1,8 +1,9 @@
 #include "tubebin/dataset/generate_scene.hpp"
 
 #include <algorithm>
-#include <chrono>
 
+#include "dataset/pile.hpp"
+#include "dataset/stage_clock.hpp"
 #include "tubebin/cloud/label_colors.hpp"
 #include "tubebin/render/preview.hpp"
 #include "tubebin/scan/scanner.hpp"
@@ -18,21 +19,6 @@ std::string png(const render::Image& image) {
   const std::vector<std::uint8_t> bytes = render::encode_png(image);
   return {bytes.begin(), bytes.end()};
 }
-
-/// Adds the time since the last call to the named stage.
-class StageClock {
- public:
-  explicit StageClock(std::map<std::string, double>& seconds) : seconds_(seconds) {}
-  void end_stage(const char* name) {
-    const auto now = std::chrono::steady_clock::now();
-    seconds_[name] += std::chrono::duration<double>(now - start_).count();
-    start_ = now;
-  }
-
- private:
-  std::map<std::string, double>& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 bool has_point(const cloud::Cloud& cloud) {
   return std::any_of(cloud.points.begin(), cloud.points.end(), cloud::is_finite);
@@ -54,31 +40,17 @@ std::uint64_t attempt_seed(const DatasetConfig& config, const SceneId& id, int a
                       static_cast<std::uint64_t>(id.case_number), static_cast<std::uint64_t>(attempt)});
 }
 
-GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, int attempt) {
+GeneratedScene show_pile(const DatasetConfig& config, const SceneId& id, const Pile& pile) {
   GeneratedScene result;
+  result.seconds = pile.seconds;
+  result.physics = pile.physics;
   StageClock clock(result.seconds);
-  Random random(attempt_seed(config, id, attempt));
-
-  const std::vector<tube::Tube> tubes = config.kinds.empty()
-                                            ? tube::generate_tubes(id.tubes, config.tube, random)
-                                            : tube::generate_mixed_tubes(id.tubes, config.kinds, random);
-  clock.end_stage("build");
-
-  physics::DropResult drop = physics::drop_tubes(tubes, config.bin, config.physics, random.bits());
-  clock.end_stage("drop");
-  result.physics = drop.figures;
-  if (drop.failure != physics::DropFailure::none) {
-    result.failure = to_string(drop.failure);
-    result.failure_detail = drop.detail;
-    return result;
-  }
-
   const std::vector<scene::Scanner> scanners = config.all_scanners();
   const scene::Scene scene{.bin = config.bin,
                            .scanner = scanners.front(),
-                           .tubes = std::move(drop.tubes),
+                           .tubes = pile.tubes,
                            .further_scanners = {scanners.begin() + 1, scanners.end()}};
-  scan::MergedScan scanned = scan::scan_from_all(scene, attempt_seed(config, id, attempt));
+  scan::MergedScan scanned = scan::scan_from_all(scene, pile.seed);
   clock.end_stage("scan");
   if (!has_point(scanned.cloud)) {
     result.failure = "unseen";
@@ -92,14 +64,15 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
   clock.end_stage("relate");
 
   result.content.record = {.id = id.name(),
-                           .seed = attempt_seed(config, id, attempt),
+                           .seed = pile.seed,
                            .scene = scene,
                            .window = scanned.window,
                            .colors = cloud::label_colors(scene.tubes.size()),
                            .tube_pixels = std::move(scanned.tube_pixels),
-                           .contacts = std::move(drop.contacts),
+                           .contacts = pile.contacts,
                            .further_windows = std::move(scanned.further_windows),
-                           .relations = std::move(relations)};
+                           .relations = std::move(relations),
+                           .lift = pile.lift};
   result.content.cloud = std::move(scanned.cloud);
   if (config.output.clean_cloud) {
     result.content.clean_cloud = scan::scan_exactly_from_all(scene).cloud;
@@ -111,6 +84,16 @@ GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, in
     result.content.images["ground_truth.png"] = png(render::render_labels(scene, scanned.window));
     clock.end_stage("preview");
   }
+  return result;
+}
+
+GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, int attempt) {
+  const Piles made = make_piles(config, id, attempt, std::max(id.step, 0));
+  if (made.failure.empty()) return show_pile(config, id, made.piles.back());
+  GeneratedScene result;
+  result.failure = made.failure;
+  result.failure_detail = made.failure_detail;
+  result.physics = made.physics;
   return result;
 }
 

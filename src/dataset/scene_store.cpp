@@ -80,9 +80,11 @@ void SceneStore::remove(const ConfinedPath& scene_name) const {
 
 void SceneStore::remove_empty_sets(const std::vector<SceneId>& scenes) const {
   std::set<ConfinedPath> sets;
-  for (const SceneId& id : scenes) sets.insert(ConfinedPath(id.name()).parent());
-  for (const ConfinedPath& set : sets) {
-    const FolderEntry entry = folder_.find_entry(set);
+  for (const SceneId& id : scenes)
+    for (ConfinedPath set = ConfinedPath(id.name()).parent(); !set.is_folder_itself(); set = set.parent())
+      sets.insert(set);
+  for (auto set = sets.rbegin(); set != sets.rend(); ++set) {  // inner folders first
+    const FolderEntry entry = folder_.find_entry(*set);
     ::unlinkat(entry.folder.get(), entry.name.c_str(), AT_REMOVEDIR);  // does nothing where something is in it
   }
 }

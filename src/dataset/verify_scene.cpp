@@ -30,7 +30,7 @@ void check_identity(const scene::SceneRecord& scene, const DatasetConfig& config
   if (scene.id != id.name()) problems.push_back(fmt::format("scene.json calls itself {}", scene.id));
   if (scene.seed != record.seed)
     problems.push_back(fmt::format("scene.json has seed {}, recorded is {}", scene.seed, record.seed));
-  if (scene.scene.tubes.size() != static_cast<std::size_t>(id.tubes))
+  if (scene.scene.tubes.size() != static_cast<std::size_t>(id.tubes_in_bin()))
     problems.push_back(fmt::format("scene.json has {} tubes", scene.scene.tubes.size()));
   if (scene.scene.bin != config.bin) problems.push_back("scene.json has another bin than config.yaml");
 }
@@ -46,7 +46,8 @@ void check_kinds(const scene::SceneRecord& scene, const DatasetConfig& config, P
     const std::string name = tube::kind_name(config.kinds, i);
     const int count = count_of[name];
     count_of.erase(name);
-    if (count < config.kinds[i].count || (config.kinds[i].share == 0.0 && count > config.kinds[i].count))
+    if ((!scene.lift && count < config.kinds[i].count) ||
+        (config.kinds[i].share == 0.0 && count > config.kinds[i].count))
       problems.push_back(fmt::format("scene.json has {} tubes of kind {}, config.yaml asks for {}", count, name,
                                      config.kinds[i].count));
   }
@@ -203,6 +204,25 @@ void check_held(const scene::SceneRecord& scene, Problems& problems) {
     if (!held.contains(k)) problems.push_back(fmt::format("tube {} floats: no contacts lead from it to the bin", k));
 }
 
+/// That the pile is the one of the step before without the tube that was lifted, and moved as it says.
+void check_lift(const scene::DatasetFiles& files, const scene::SceneRecord& scene, SceneId id, Problems& problems) {
+  if (scene.lift.has_value() != (id.step > 0))
+    problems.push_back(id.step > 0 ? "scene.json does not say what was lifted" : "scene.json tells of a lift");
+  if (!scene.lift || id.step <= 0) return;
+  --id.step;
+  const scene::SceneRecord before =
+      scene::parse_scene_json(files.read(id.name(), "scene.json"), files.place(id.name(), "scene.json"));
+  if (scene.lift->lifted > before.scene.tubes.size())
+    return problems.push_back(fmt::format("tube {} was lifted, of {}", scene.lift->lifted, before.scene.tubes.size()));
+  const std::vector<scene::PlacedTube> left = scene::without(before.scene.tubes, scene.lift->lifted);
+  const bool same = std::ranges::equal(left, scene.scene.tubes, [](const auto& a, const auto& b) {
+    return a.tube.nodes == b.tube.nodes && a.tube.cylinders == b.tube.cylinders && a.tube.radius == b.tube.radius;
+  });
+  if (!same) problems.push_back(fmt::format("the tubes are not those that {} has beside the lifted one", id.name()));
+  else if (scene::find_moved(left, scene.scene.tubes) != scene.lift->moved)
+    problems.push_back(fmt::format("the tubes did not move from where {} has them as scene.json says", id.name()));
+}
+
 void check_relations(const scene::SceneRecord& scene, Problems& problems) {
   if (!scene.relations) problems.push_back("scene.json does not say who covers whom");
   else if (*scene.relations != relate_pile(scene.scene))
@@ -225,6 +245,7 @@ void check_content(const scene::DatasetFiles& files, const DatasetConfig& config
   check_contacts(scene, config, problems);
   check_held(scene, problems);
   check_relations(scene, problems);
+  check_lift(files, scene, id, problems);
   if (record.physics.largest_drift > config.physics.drift_max)
     problems.push_back(
         fmt::format("a tube moved by {:.3f} mm in the check at the end", record.physics.largest_drift * 1e3));

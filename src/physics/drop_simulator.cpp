@@ -1,129 +1,19 @@
 #include "tubebin/physics/drop_simulator.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-#include "physics/rest_check.hpp"
-#include "physics/rest_proof.hpp"
-#include "physics/rigid_world.hpp"
+#include "physics/settling.hpp"
 #include "physics/spawn.hpp"
 
 namespace tubebin::physics {
-namespace {
-
-/// Bodies at rest may be this far apart and still count as touching: twice what the contact layer leaves.
-constexpr double kTouchingGap = 0.0002;  // metres
-
-DropResult failed(DropFailure failure, std::string detail, DropFigures figures = {}) {
-  DropResult result;
-  result.failure = failure;
-  result.detail = std::move(detail);
-  result.figures = figures;
-  return result;
-}
-
-/// One drop while it goes on.
-class Drop {
- public:
-  Drop(const std::vector<scene::PlacedTube>& spawned, const scene::Bin& bin, const PhysicsOptions& options,
-       Random& random)
-      : bin_(bin), options_(options), random_(random), world_(spawned, bin, options), proof_(options) {
-    const double top = top_of(spawned);
-    if (options.spill == Spill::guard) world_.raise_guards(top);
-    wait_for_a_fall_from(top);
-  }
-
-  /// Steps until the pile is proven to be at rest. Why it is not, else.
-  DropFailure settle() {
-    while (!proof_.is_complete(time_)) {
-      if (time_ >= deadline_) return proof_.has_started() ? DropFailure::drift : DropFailure::unsettled;
-      if (const auto tube = find_outside(world_, bin_); tube && !drop_again(*tube)) return DropFailure::outside;
-      step();
-    }
-    figures_.largest_drift = proof_.drift();
-    return DropFailure::none;
-  }
-
-  const RigidWorld& world() const { return world_; }
-  const DropFigures& figures() const { return figures_; }
-
- private:
-  void step() {
-    const bool all_slow = have_passed(options_.rest_window, last_fast_, time_);
-    const double time_step = all_slow ? options_.rest_time_step : options_.time_step;
-    world_.step(time_step);
-    ++figures_.steps;
-    time_ = figures_.simulated_seconds += time_step;
-    if (!is_slow(world_, options_)) last_fast_ = time_;
-    const bool may_start = have_passed(options_.rest_window, last_fast_, time_);
-    if (may_start && world_.has_guards()) {
-      world_.remove_guards();
-      last_fast_ = time_;
-    } else if (may_start || proof_.is_under_way()) {
-      proof_.observe(nodes_in_world(world_.tubes()), time_, may_start);
-    }
-  }
-
-  /// False where the tube is not to be dropped again, or no longer.
-  bool drop_again(std::size_t tube) {
-    if (options_.spill == Spill::reject || figures_.redropped >= static_cast<int>(world_.size())) return false;
-    ++figures_.redropped;
-    world_.put(tube, spawn_again(tube, world_.tubes(), bin_, options_, random_));
-    wait_for_a_fall_from(top_of({world_.tubes()[tube]}));
-    last_fast_ = time_;
-    return true;
-  }
-
-  static double top_of(const std::vector<scene::PlacedTube>& tubes) {
-    double top = 0.0;
-    for (const scene::PlacedTube& tube : tubes) top = std::max(top, CollisionTube(tube).bounds.max().z());
-    return top;
-  }
-
-  void wait_for_a_fall_from(double height) { deadline_ = time_ + options_.time_limit + height / options_.speed_max; }
-
-  const scene::Bin& bin_;
-  const PhysicsOptions& options_;
-  Random& random_;
-  RigidWorld world_;
-  RestProof proof_;
-  DropFigures figures_;
-  double time_ = 0.0;  ///< seconds, as the others
-  double last_fast_ = 0.0;
-  double deadline_ = 0.0;
-};
-
-DropResult judge(const RigidWorld& world, const scene::Bin& bin, const PhysicsOptions& options, DropFigures figures) {
-  DropResult result;
-  result.tubes = world.tubes();
-  result.contacts = find_contacts(result.tubes, bin, -kTouchingGap);
-  figures.deepest_penetration = deepest_penetration(result.contacts);
-  result.figures = figures;
-  if (figures.deepest_penetration > options.penetration_max)
-    return failed(DropFailure::penetration, fmt::format("{:.2f} mm deep", figures.deepest_penetration * 1e3), figures);
-  if (const auto tube = find_floating(result.contacts, result.tubes.size()))
-    return failed(DropFailure::floating, fmt::format("tube {} touches nothing that holds it", *tube + 1), figures);
-  return result;
-}
-
-}  // namespace
 
 DropResult drop_tubes(const std::vector<tube::Tube>& tubes, const scene::Bin& bin, const PhysicsOptions& options,
                       std::uint64_t seed) {
   Random random(seed);
   const auto spawned = spawn(tubes, bin, options, random);
-  if (!spawned) return failed(DropFailure::spawn, "a tube fits between the walls in no orientation");
-
-  Drop drop(*spawned, bin, options, random);
-  switch (const DropFailure failure = drop.settle()) {
-    case DropFailure::none:
-      return judge(drop.world(), bin, options, drop.figures());
-    case DropFailure::outside:
-      return failed(failure, fmt::format("tube {} left the bin", *find_outside(drop.world(), bin) + 1), drop.figures());
-    default:
-      return failed(failure, fmt::format("still moving after {:.1f} s", drop.figures().simulated_seconds),
-                    drop.figures());
-  }
+  if (spawned) return settle(*spawned, bin, options, random);
+  DropResult result;
+  result.failure = DropFailure::spawn;
+  result.detail = "a tube fits between the walls in no orientation";
+  return result;
 }
 
 }  // namespace tubebin::physics

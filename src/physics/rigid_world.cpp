@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -41,6 +42,7 @@ struct RigidWorld::Impl {
   scene::Bin bin;
   std::vector<CollisionBox> boxes;  ///< of the bin, with its guards while they stand
   bool guards_stand = false;
+  std::optional<std::size_t> pulled;     ///< the tube that is held, whatever pushes
   std::vector<scene::PlacedTube> tubes;  ///< poses are the bodies'
   std::vector<dBodyID> bodies;
   std::vector<double> inverse_masses;             ///< 1/kg
@@ -97,7 +99,7 @@ struct RigidWorld::Impl {
     for (std::size_t i = 0; i < shapes.size(); ++i) margins.push_back(margin_of(i, time_step));
     near_cylinders.follow(shapes, margins);
     for (std::size_t j = 0; j < shapes.size(); ++j) {
-      collide(boxes, shapes[j], -margins[j], touches);
+      if (pulled != j) collide(boxes, shapes[j], -margins[j], touches);
       append(kBinBody, j);
       for (const NearTube& near : near_cylinders.near(j)) {
         collide(shapes[near.first], shapes[j], near.cylinders, -std::max(margins[near.first], margins[j]), touches);
@@ -116,6 +118,8 @@ struct RigidWorld::Impl {
 
   /// The tube at the step's end, were there no contacts.
   SolverBody unhindered(std::size_t i, double time_step) const {
+    if (pulled == i)
+      return {.velocity = to_vec(dBodyGetLinearVel(bodies[i])), .center = to_vec(dBodyGetPosition(bodies[i]))};
     const Eigen::Matrix3d rotation = tubes[i].world_from_tube.linear();
     return {.velocity = to_vec(dBodyGetLinearVel(bodies[i])) - time_step * options.gravity * Vec3::UnitZ(),
             .turn_velocity = to_vec(dBodyGetAngularVel(bodies[i])),
@@ -200,6 +204,29 @@ void RigidWorld::remove_guards() {
   impl_->guards_stand = false;
 }
 bool RigidWorld::has_guards() const { return impl_->guards_stand; }
+
+void RigidWorld::pull(std::size_t tube, double speed) {
+  impl_->pulled = tube;
+  dBodySetKinematic(impl_->bodies[tube]);
+  dBodySetLinearVel(impl_->bodies[tube], 0, 0, speed);
+  dBodySetAngularVel(impl_->bodies[tube], 0, 0, 0);
+}
+
+double RigidWorld::pulling_force() const {
+  const std::size_t tube = impl_->pulled.value();
+  double force = impl_->options.gravity / impl_->inverse_masses[tube];
+  for (const StepContact& contact : impl_->contacts) {
+    if (contact.second == tube) force -= contact.force.z();
+    if (contact.first == tube) force += contact.force.z();
+  }
+  return force;
+}
+
+bool RigidWorld::touches_another(std::size_t tube) const {
+  return std::ranges::any_of(impl_->contacts, [&](const StepContact& contact) {
+    return contact.first != kBinBody && (contact.first == tube || contact.second == tube);
+  });
+}
 
 void RigidWorld::put(std::size_t tube, const Pose& world_from_tube) {
   impl_->tubes[tube].world_from_tube = world_from_tube;

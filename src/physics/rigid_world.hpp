@@ -22,6 +22,12 @@ class RigidWorld {
   void raise_guards(double height);
   void remove_guards();
   bool has_guards() const;
+  /// Holds a tube from now on, without turning, and moves it straight up (m/s). It passes through the bin.
+  void pull(std::size_t tube, double speed);
+  /// N, upward, that held the pulled tube over the last step: its weight and what its contacts weigh on it.
+  double pulling_force() const;
+  /// Whether a tube touched, or nearly, another one in the last step.
+  bool touches_another(std::size_t tube) const;
   /// Moves a tube to where it is to fall from.
   void put(std::size_t tube, const Pose& world_from_tube);
 

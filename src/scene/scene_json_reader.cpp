@@ -192,6 +192,18 @@ PileRelations read_relations(const JsonPlace& root, const std::vector<std::size_
   return relations;
 }
 
+/// There was one tube more in the pile before.
+Lift read_lift(const JsonPlace& place, std::size_t tube_count) {
+  Lift lift;
+  lift.lifted = read_tube_label(place.at("lifted"), tube_count + 1);
+  lift.force = place.at("force").number();
+  for (const JsonPlace& label : place.at("dragged").elements())
+    lift.dragged.push_back(read_tube_label(label, tube_count));
+  for (const JsonPlace& tube : place.at("moved").elements())
+    lift.moved.push_back({read_tube_label(tube.at("label"), tube_count), tube.at("distance").number({0.0})});
+  return lift;
+}
+
 }  // namespace
 
 SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
@@ -217,6 +229,7 @@ SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
   }
   for (const JsonPlace& contact : root.at("contacts").elements())
     record.contacts.push_back(read_contact(contact, record.scene.tubes.size()));
+  if (root.has("lift")) record.lift = read_lift(root.at("lift"), record.scene.tubes.size());
   if (root.has("occlusions") || root.has("entanglement")) record.relations = read_relations(root, record.tube_pixels);
   return record;
 }

@@ -102,6 +102,14 @@ void add_relations(const SceneRecord& record, const PileRelations& relations, Or
                           {"groups", entangled_groups(record.scene.tubes.size(), relations.above)}};
 }
 
+OrderedJson lift_to_json(const Lift& lift) {
+  OrderedJson moved = OrderedJson::array();
+  for (const MovedTube& tube : lift.moved)
+    moved.push_back({{"label", tube.label}, {"distance", to_json(tube.distance)}});
+  return {
+      {"lifted", lift.lifted}, {"force", to_json(lift.force)}, {"dragged", lift.dragged}, {"moved", std::move(moved)}};
+}
+
 void check_consistent(const SceneRecord& record) {
   const std::size_t tubes = record.scene.tubes.size();
   if (record.colors.size() != tubes + 1 || record.tube_pixels.size() != tubes)
@@ -134,6 +142,7 @@ std::string format_scene_json(const SceneRecord& record) {
     json["tubes"].push_back(tube_to_json(record.scene.tubes[k], k + 1, record.colors[k + 1], record.tube_pixels[k]));
   for (const Contact& contact : record.contacts) json["contacts"].push_back(contact_to_json(contact));
   if (record.relations) add_relations(record, *record.relations, json);
+  if (record.lift) json["lift"] = lift_to_json(*record.lift);
   return format_json(json);
 }
 

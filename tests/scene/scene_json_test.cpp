@@ -104,11 +104,13 @@ TEST(SceneJson, ABinThatIsNoBoxSaysSo) {
 
 TEST(SceneJson, EverythingReadsBackBitByBit) {
   SceneRecord record = make_record(10);
+  record.lift = {.lifted = 11, .force = 0.1 + 0.2, .dragged = {3, 10}, .moved = {{2, 1.0 / 3.0}}};
   record.scene.tubes[3].tube.kind = "pipe";
   const SceneRecord back = parse(format_scene_json(record));
   EXPECT_EQ(back.id, record.id);
   EXPECT_EQ(back.seed, record.seed);
   EXPECT_EQ(back.scene.bin, record.scene.bin);
+  EXPECT_EQ(back.lift, record.lift);
   EXPECT_EQ(back.scene.scanner.rotation_deg, record.scene.scanner.rotation_deg);
   EXPECT_EQ(back.scene.scanner.horizontal_fov_deg, record.scene.scanner.horizontal_fov_deg);
   EXPECT_EQ(back.scene.scanner.region, ScanRegion::full);
@@ -196,6 +198,7 @@ TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   record.further_windows = {record.window};
   record.scene.scanner.effects.projector.enabled = true;  // else the scanner's effects are not there
   record.scene.bin.draft_deg = 3.0;                       // else it is a box
+  record.lift = {.lifted = 3, .force = 0.6, .dragged = {1}, .moved = {{2, 0.004}}};
   const json scene = json::parse(format_scene_json(record));
   const auto keys = [](const json& object) {
     std::set<std::string> names;
@@ -206,6 +209,8 @@ TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   EXPECT_EQ(keys(scene), keys(top));
   EXPECT_EQ(keys(scene["bin"]), keys(top["bin"]["properties"]));
   EXPECT_EQ(keys(scene["scanner"]), keys(top["scanner"]["properties"]));
+  EXPECT_EQ(keys(scene["lift"]), keys(top["lift"]["properties"]));
+  EXPECT_EQ(keys(scene["lift"]["moved"][0]), keys(top["lift"]["properties"]["moved"]["items"]["properties"]));
   EXPECT_EQ(keys(scene["tubes"][0]), keys(schema["$defs"]["tube"]["properties"]));
   EXPECT_EQ(keys(scene["contacts"][0]), keys(schema["$defs"]["contact"]["properties"]));
   EXPECT_EQ(keys(scene["occlusions"][0]), keys(schema["$defs"]["occlusion"]["properties"]));

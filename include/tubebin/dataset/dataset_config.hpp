@@ -6,7 +6,7 @@
 
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/yaml.hpp"
-#include "tubebin/physics/drop_simulator.hpp"
+#include "tubebin/physics/lift.hpp"
 #include "tubebin/scene/scene.hpp"
 #include "tubebin/tube/tube_generator.hpp"
 
@@ -16,6 +16,19 @@ struct OutputOptions {
   cloud::CloudFormat format = cloud::CloudFormat::pcd_binary;
   bool clean_cloud = false;  ///< the noise-free twin beside each cloud
   bool preview = false;      ///< a rendered picture and the ground-truth image beside each cloud
+};
+
+/// Which tube is lifted out next.
+enum class LiftRule {
+  top,    ///< of the tubes with none above them, the one whose centre of mass is highest
+  random  ///< any of these
+};
+
+/// How piles are taken apart, tube by tube, with a scene of each step.
+struct SequenceOptions {
+  int lifts = 0;  ///< at most; one tube stays
+  LiftRule rule = LiftRule::top;
+  physics::LiftOptions lift;
 };
 
 struct DatasetConfig {
@@ -31,6 +44,7 @@ struct DatasetConfig {
   scene::Bin bin;
   physics::PhysicsOptions physics;
   scene::Scanner scanner;
+  SequenceOptions sequence;
   std::vector<scene::Scanner> scanners;  ///< several, merged into one cloud, instead of `scanner`
   OutputOptions output;
 

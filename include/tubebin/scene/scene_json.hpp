@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tubebin/cloud/cloud.hpp"
+#include "tubebin/scene/lift.hpp"
 #include "tubebin/scene/pile_relations.hpp"
 
 namespace tubebin::scene {
@@ -23,6 +24,7 @@ struct SceneRecord {
   std::vector<Contact> contacts;
   std::vector<PixelWindow> further_windows = {};  ///< of the scene's further scanners
   std::optional<PileRelations> relations;         ///< nothing in files of versions that did not write them
+  std::optional<Lift> lift = {};                  ///< where the pile is what was left after a tube was lifted out
 };
 
 /// JSON text; equal records give equal bytes. Throws std::invalid_argument where the record contradicts

@@ -1,0 +1,30 @@
+/// Piles at rest, before anyone looks at them.
+#pragma once
+
+#include "tubebin/dataset/generate_scene.hpp"
+
+namespace tubebin::dataset {
+
+struct Pile {
+  std::uint64_t seed = 0;  ///< of the scene that shows it
+  std::vector<scene::PlacedTube> tubes;
+  std::vector<scene::Contact> contacts;
+  physics::DropFigures physics;
+  std::optional<scene::Lift> lift;  ///< that left it
+  std::map<std::string, double> seconds;
+};
+
+/// A drop, and what lifting one tube after the other leaves of it.
+struct Piles {
+  std::string failure;  ///< as GeneratedScene's; then there is no pile
+  std::string failure_detail;
+  physics::DropFigures physics;  ///< of what failed
+  std::vector<Pile> piles;       ///< after 0, 1, ..., lifts lifts
+};
+
+Piles make_piles(const DatasetConfig& config, const SceneId& id, int attempt, int lifts);
+
+/// Scans a pile, and tells how it lies.
+GeneratedScene show_pile(const DatasetConfig& config, const SceneId& id, const Pile& pile);
+
+}  // namespace tubebin::dataset

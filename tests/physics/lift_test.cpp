@@ -1,0 +1,75 @@
+#include "tubebin/physics/lift.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "physics/rest_check.hpp"
+#include "physics/rest_proof.hpp"
+#include "tubebin/scene/lift.hpp"
+#include "tubebin/tube/tube_generator.hpp"
+
+namespace tubebin::physics {
+namespace {
+
+constexpr double kTubeRadius = 0.0125, kTubeMass = 0.1;
+
+/// At rest where it touches: as deep as contacts are left alone.
+scene::PlacedTube tube_between(const Vec3& a, const Vec3& b) {
+  return {{.radius = kTubeRadius, .mass = kTubeMass, .nodes = {Vec3::Zero(), b - a}, .cylinders = {{0, 1, 0}}},
+          make_pose(Quat::Identity(), a)};
+}
+
+LiftResult lift(const std::vector<scene::PlacedTube>& pile, std::size_t tube) {
+  return lift_tube(pile, tube, scene::Bin{}, PhysicsOptions{}, LiftOptions{}, 1);
+}
+
+TEST(Lift, AFreeTubeWeighsWhatItWeighsAndLeavesTheOthersAlone) {
+  const std::vector<scene::PlacedTube> pile = {tube_between({-0.15, -0.1, kTubeRadius}, {0.15, -0.1, kTubeRadius}),
+                                               tube_between({-0.15, 0.1, kTubeRadius}, {0.15, 0.1, kTubeRadius})};
+  const LiftResult result = lift(pile, 0);
+  ASSERT_EQ(result.rest.failure, DropFailure::none) << result.rest.detail;
+  EXPECT_NEAR(result.force, kTubeMass * PhysicsOptions{}.gravity, 1e-6);
+  EXPECT_TRUE(result.dragged.empty());
+  ASSERT_EQ(result.rest.tubes.size(), 1u);
+  EXPECT_LT(largest_movement(nodes_in_world({pile[1]}), nodes_in_world(result.rest.tubes)), 0.0005);
+}
+
+TEST(Lift, WhatLiesAcrossIsDraggedAndWeighsOnIt) {
+  const std::vector<scene::PlacedTube> pile = {
+      tube_between({-0.15, -0.1, kTubeRadius}, {0.15, -0.1, kTubeRadius}),
+      tube_between({-0.15, 0.1, kTubeRadius}, {0.15, 0.1, kTubeRadius}),
+      tube_between({0.0, -0.15, 3.0 * kTubeRadius}, {0.0, 0.15, 3.0 * kTubeRadius})};
+  const LiftResult result = lift(pile, 0);
+  ASSERT_EQ(result.rest.failure, DropFailure::none) << result.rest.detail;
+  EXPECT_EQ(result.dragged, std::vector<std::size_t>{1});  // what was tube 2
+  const double weight = kTubeMass * PhysicsOptions{}.gravity;
+  EXPECT_GT(result.force, 1.3 * weight) << "half of the upper tube lies on it";
+  EXPECT_LT(result.force, 2.2 * weight);
+  EXPECT_TRUE(lift(pile, 2).dragged.empty()) << "the upper one is free";
+}
+
+TEST(Lift, APileIsEmptiedOneByOneAndEachRestIsAPile) {
+  Random random(31);
+  const PhysicsOptions options;
+  const scene::Bin bin;
+  DropResult pile = drop_tubes(tube::generate_tubes(8, {}, random), bin, options, 9);
+  ASSERT_EQ(pile.failure, DropFailure::none) << pile.detail;
+  while (pile.tubes.size() > 1) {
+    const std::vector<scene::PlacedTube> before = pile.tubes;
+    const LiftResult result = lift(before, 0);
+    ASSERT_EQ(result.rest.failure, DropFailure::none) << result.rest.detail;
+    pile = result.rest;
+    ASSERT_EQ(pile.tubes.size(), before.size() - 1);
+    EXPECT_EQ(pile.tubes.front().tube.nodes, before[1].tube.nodes);
+    EXPECT_LE(deepest_penetration(find_contacts(pile.tubes, bin, 0.0)), options.penetration_max);
+    EXPECT_FALSE(find_floating(pile.contacts, pile.tubes.size()));
+    EXPECT_GT(result.force, 0.99 * before[0].tube.mass * options.gravity);
+    const LiftResult again = lift(before, 0);
+    for (std::size_t k = 0; k < pile.tubes.size(); ++k)
+      EXPECT_EQ(again.rest.tubes[k].world_from_tube.matrix(), pile.tubes[k].world_from_tube.matrix());
+  }
+}
+
+}  // namespace
+}  // namespace tubebin::physics
