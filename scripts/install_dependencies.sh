@@ -3,6 +3,8 @@
 # Usage: scripts/install_dependencies.sh [PACKAGE...]   (further packages to install)
 set -euo pipefail
 
+# Two thirds are what libpcl-dev asks for: VTK's headers, with a JDK, Qt and MPI, which nothing here uses. Debian has PCL's
+# headers in no other package.
 packages=(
   g++ cmake ninja-build ccache pkg-config
   libode-dev libembree-dev libpcl-dev libosmesa6-dev libpng-dev zlib1g-dev liblzf-dev
