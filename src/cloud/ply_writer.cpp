@@ -1,8 +1,10 @@
 /// PLY 1.0 (Turk 1994, "The PLY Polygon File Format"), with PCL's `camera` element.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
+#include <utility>
 
 #include "cloud/cloud_formats.hpp"
 
@@ -21,15 +23,20 @@ constexpr const char* kCameraProperties =
     "property float centery\nproperty int viewportx\nproperty int viewporty\nproperty float k1\nproperty "
     "float k2\n";
 
-/// Whole numbers are `int`: some readers drop `uint`.
+/// `int` where all values fit: some readers drop `uint`.
+const char* type_of(const std::vector<std::uint32_t>& values) {
+  const bool fit = std::ranges::all_of(values, [](std::uint32_t value) { return std::in_range<std::int32_t>(value); });
+  return fit ? "int" : "uint";
+}
+
 std::string format_header(const Cloud& cloud) {
   std::string header = fmt::format(
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
       "property float z\n",
       cloud.size());
   if (!cloud.colors.empty()) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-  if (!cloud.labels.empty()) header += "property int label\n";
-  if (!cloud.sources.empty()) header += "property int source\n";
+  if (!cloud.labels.empty()) header += fmt::format("property {} label\n", type_of(cloud.labels));
+  if (!cloud.sources.empty()) header += fmt::format("property {} source\n", type_of(cloud.sources));
   return header + kCameraProperties + "end_header\n";
 }
 

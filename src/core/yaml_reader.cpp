@@ -1,3 +1,4 @@
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -210,14 +211,33 @@ class Reader : public Fields {
   std::set<std::string> known_;
 };
 
+/// Notes where documents start.
+struct DocumentStarts final : YAML::EventHandler {
+  std::vector<YAML::Mark> marks;
+
+  void OnDocumentStart(const YAML::Mark& mark) override { marks.push_back(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+/// YAML::LoadAll would never return from some texts (a comma alone).
 YAML::Node parse(const std::string& text, const std::string& name) {
   YAML::Node root;
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (!documents.empty()) root = documents.front();
-    if (documents.size() > 1)
-      throw_config_error("{}: holds {} YAML documents; valid: one, without another '---'",
-                         place_of(name, documents[1].Mark()), documents.size());
+    root = YAML::Load(text);
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    DocumentStarts starts;
+    for (int document = 0; document < 2; ++document) parser.HandleNextDocument(starts);
+    if (root.IsMap() && starts.marks.size() > 1)
+      throw_config_error("{}: another YAML document starts here; valid: one, without another '---'",
+                         place_of(name, starts.marks[1]));
   } catch (const YAML::Exception& error) {
     throw_config_error("{}: not valid YAML: {}", place_of(name, error.mark), error.msg);
   }

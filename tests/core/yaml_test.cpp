@@ -93,5 +93,10 @@ TEST(Yaml, RefusesDuplicateKeysAndWhatIsNoMapping) {
   EXPECT_THAT(error_of("a: [1"), HasSubstr("not valid YAML"));
 }
 
+TEST(Yaml, RefusesASecondDocument) {
+  EXPECT_THAT(error_of("on: true\n---\non: false"), HasSubstr("another YAML document starts here"));
+  EXPECT_THAT(error_of(","), HasSubstr("the file is empty"));  // yaml-cpp finds documents without end in it
+}
+
 }  // namespace
 }  // namespace tubebin
