@@ -8,6 +8,7 @@
 #include "program.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/core/version.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
 #include "tubebin/jobs/worker_pool.hpp"
@@ -204,7 +205,7 @@ int model_one(const Arguments& arguments) {
 }
 
 /// A folder, or a pack of scenes.
-bool is_dataset(const std::string& path) { return fs::is_directory(path) || fs::path(path).extension() == ".tar"; }
+bool is_dataset(const std::string& path) { return is_folder(path) || fs::path(path).extension() == ".tar"; }
 
 results::BatchOptions batch_options(const Arguments& arguments, const results::ModelConfig& config) {
   if (arguments.scale != 1.0) throw_config_error("--scale is for single files; data sets are in metres");

@@ -2,13 +2,13 @@
 
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 #include "calibration/calibration_trials.hpp"
 #include "evaluation/statistics.hpp"
 #include "jobs/stop_note.hpp"
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/core/shuffle.hpp"
 #include "tubebin/core/version.hpp"
 #include "tubebin/jobs/folder_lock.hpp"
@@ -16,8 +16,6 @@
 
 namespace tubebin::calibration {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Split {
   std::vector<results::CloudFile> training, held_back;
@@ -146,7 +144,7 @@ double BeforeAfter::gain_error() const {
 }
 
 CalibrationReport calibrate_modeler(const CalibrationOptions& options, const results::ModelConfig& start,
-                                    jobs::Progress::Style progress_style) try {
+                                    jobs::Progress::Style progress_style) {
   const auto began = std::chrono::steady_clock::now();
   CalibrationReport report;
   report.parameters = choose_parameters(options, start.modeling.method);
@@ -175,8 +173,6 @@ CalibrationReport calibrate_modeler(const CalibrationOptions& options, const res
   report.failed_runs = trials.failed_runs();
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return report;
-} catch (const fs::filesystem_error& error) {
-  throw_io_error("{}", error.what());
 }
 
 }  // namespace tubebin::calibration

@@ -1,15 +1,13 @@
 #include "tubebin/dataset/dataset_folder.hpp"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/core/version.hpp"
 
 namespace tubebin::dataset {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kConfigFile = "config.yaml";
 
@@ -26,18 +24,16 @@ void refuse_if_made_otherwise(const std::string& folder, const DatasetConfig& th
 
 /// A folder with other things in it was hardly meant.
 void refuse_if_foreign(const std::string& folder) {
-  const auto is_foreign = [](const fs::directory_entry& entry) {
-    return !entry.path().filename().string().starts_with('.');
-  };
-  if (std::none_of(fs::directory_iterator(folder), {}, is_foreign)) return;
-  if (fs::exists(config_path(folder))) return;  // another shard of the same call was quicker
+  const auto is_foreign = [](const std::string& name) { return !name.starts_with('.'); };
+  if (std::ranges::none_of(names_in_folder(folder), is_foreign)) return;
+  if (path_exists(config_path(folder))) return;  // another shard of the same call was quicker
   throw_config_error("{}: holds files, but no data set (config.yaml is missing); choose a new or empty folder", folder);
 }
 
 /// Writes config.yaml where it is missing or gains scenes, and returns what it says.
 DatasetConfig create_or_extend_config(const OutputFolder& folder, const DatasetConfig& wanted) {
   const std::string path = config_path(folder.path());
-  if (!fs::exists(path)) {
+  if (!path_exists(path)) {
     refuse_if_foreign(folder.path());
     if (create_atomically(folder.make_entry(kConfigFile), format_config(wanted))) return wanted;
   }
@@ -52,7 +48,7 @@ DatasetConfig create_or_extend_config(const OutputFolder& folder, const DatasetC
 }  // namespace
 
 DatasetConfig read_dataset_config(const std::string& folder) {
-  if (!fs::exists(config_path(folder))) throw_io_error("{}: is no data set: config.yaml is missing", folder);
+  if (!path_exists(config_path(folder))) throw_io_error("{}: is no data set: config.yaml is missing", folder);
   DatasetConfig config;
   check_of_any_version(config, read_yaml_file(config_path(folder), fields_of(config)));
   return config;

@@ -1,12 +1,12 @@
 #include "tubebin/dataset/manifest.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "core/json_reader.hpp"
 #include "jobs/append_line.hpp"
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/path_status.hpp"
 
 namespace tubebin::dataset {
 namespace {
@@ -37,11 +37,10 @@ std::string id_of(const std::string& line) {
 }
 
 std::vector<std::string> list_shard_files(const std::string& folder) {
+  const std::string shards_folder = folder + "/" + kShardsFolder;
   std::vector<std::string> files;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder + "/" + kShardsFolder, error))
-    if (entry.path().extension() == ".jsonl") files.push_back(entry.path().string());
-  std::sort(files.begin(), files.end());
+  for (const std::string& name : names_in_folder(shards_folder))
+    if (name.ends_with(".jsonl")) files.push_back(shards_folder + "/" + name);
   return files;
 }
 
@@ -110,7 +109,7 @@ void Manifest::read_all(const std::string& folder, const std::set<std::string>* 
 }
 
 std::size_t Manifest::read(const std::string& path, const std::set<std::string>* wanted) {
-  if (!std::filesystem::exists(path)) return 0;
+  if (!path_exists(path)) return 0;
   const std::string text = read_file(path);
   std::size_t begin = 0;
   for (int line_number = 1; begin < text.size(); ++line_number) {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "dataset/verify_scene.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/core/shell_word.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
 #include "tubebin/jobs/atomic_folder.hpp"
@@ -44,7 +45,7 @@ DatasetConfig unite_configs(const std::vector<std::string>& folders) {
 std::vector<std::string> other_folders(const std::string& output, const std::vector<std::string>& folders) {
   std::vector<std::string> others;
   for (const std::string& folder : folders) {
-    if (!fs::is_directory(folder)) throw_io_error("{}: is no data set: not a folder", folder);
+    if (!is_folder(folder)) throw_io_error("{}: is no data set: not a folder", folder);
     std::error_code error;
     if (!fs::equivalent(folder, output, error)) others.push_back(folder);
   }
@@ -195,12 +196,10 @@ class Merge {
 }  // namespace
 
 MergeReport merge_datasets(const std::string& output, const std::vector<std::string>& folders, int jobs,
-                           jobs::Progress::Style progress) try {
+                           jobs::Progress::Style progress) {
   const std::vector<std::string> others = other_folders(output, folders);
   DatasetFolder folder(output, unite_configs(others.empty() ? std::vector{output} : others));
   return Merge(folder, others).run(jobs, progress);
-} catch (const fs::filesystem_error& error) {
-  throw_io_error("{}", error.what());
 }
 
 }  // namespace tubebin::dataset

@@ -1,11 +1,11 @@
 #include "tubebin/dataset/verify_dataset.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 #include <sstream>
 
 #include "dataset/verify_scene.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/jobs/batch.hpp"
 
 namespace tubebin::dataset {
@@ -50,8 +50,7 @@ VerificationReport verify_dataset(const std::string& folder, int jobs, jobs::Pro
   std::vector<std::size_t> recorded;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     if (manifest.find(scenes[i].name()) != nullptr) recorded.push_back(i);
-    else if (std::filesystem::exists(folder + "/" + scenes[i].name()))
-      add_damaged(report, scenes[i], {"is not in the manifest"});
+    else if (path_exists(folder + "/" + scenes[i].name())) add_damaged(report, scenes[i], {"is not in the manifest"});
     else ++report.missing;
   }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/file_record.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/core/version.hpp"
 #include "tubebin/dataset/dataset_folder.hpp"
 #include "tubebin/dataset/manifest.hpp"
@@ -26,7 +26,6 @@
 namespace tubebin::exports {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kIndex = "index.json";
@@ -34,8 +33,8 @@ constexpr const char* kIndexFormat = "tubebin export 1";
 
 /// The settings of the drop, which Gazebo goes on with; of a data set without a configuration, the defaults.
 physics::PhysicsOptions physics_of(const std::string& dataset) {
-  return fs::exists(dataset + "/config.yaml") ? dataset::read_dataset_config(dataset).physics
-                                              : physics::PhysicsOptions{};
+  return path_exists(dataset + "/config.yaml") ? dataset::read_dataset_config(dataset).physics
+                                               : physics::PhysicsOptions{};
 }
 
 ImageRegion region_of(const ExportOptions& options) { return options.crop ? ImageRegion::bin : ImageRegion::full; }
@@ -82,7 +81,7 @@ struct Source {
 };
 
 std::vector<Source> list_sources(const scene::DatasetFiles& dataset, const scene::DatasetHashes& hashes) {
-  if (!fs::exists(dataset.dataset()))
+  if (!path_exists(dataset.dataset()))
     throw_io_error("{}: is no data set: not a folder and not a pack", dataset.dataset());
   std::vector<Source> sources;
   for (const results::CloudFile& cloud : results::find_clouds(dataset)) {
@@ -146,11 +145,10 @@ std::vector<Source> continue_index(const std::string& path, const std::vector<In
 
 /// A folder with other things in it was hardly meant.
 void refuse_if_no_export(const std::string& output) {
-  if (!fs::exists(output) || fs::exists(output + "/index.json")) return;
-  for (const fs::directory_entry& entry : fs::directory_iterator(output))
-    if (const std::string name = entry.path().filename(); !name.starts_with('.'))
-      throw_config_error("{}: holds files, but no export (index.json is missing); choose a new or empty folder",
-                         output);
+  if (!path_exists(output) || path_exists(output + "/index.json")) return;
+  const auto is_foreign = [](const std::string& name) { return !name.starts_with('.'); };
+  if (std::ranges::any_of(names_in_folder(output), is_foreign))
+    throw_config_error("{}: holds files, but no export (index.json is missing); choose a new or empty folder", output);
 }
 
 /// Writes the index that says what the output is made from, and returns the scenes in its order.
@@ -158,7 +156,7 @@ std::vector<Source> update_index(const scene::DatasetFiles& dataset, const scene
                                  const OutputFolder& output, const std::string& format) {
   const std::string path = output.place(kIndex);
   std::vector<Source> sources = list_sources(dataset, hashes);
-  if (fs::exists(path)) sources = continue_index(path, read_index(path, format), std::move(sources));
+  if (path_exists(path)) sources = continue_index(path, read_index(path, format), std::move(sources));
   write_atomically(output.make_entry(kIndex), format_index(sources, format));
   return sources;
 }
@@ -230,7 +228,7 @@ ExportReport export_dataset(const ExportOptions& options, jobs::Progress::Style 
   refuse_if_no_export(options.output);
   const scene::DatasetFiles dataset(options.dataset);
   const scene::DatasetHashes hashes(dataset);
-  if (!fs::exists(options.output)) list_sources(dataset, hashes);  // leaves no folder where there is nothing to export
+  if (!path_exists(options.output)) list_sources(dataset, hashes);  // leaves no folder where there is nothing to export
   const OutputFolder output(options.output);
   const jobs::FolderLock lock(output);
   const std::vector<Source> sources = update_index(dataset, hashes, output, described(options));
@@ -273,8 +271,6 @@ ExportReport export_dataset(const ExportOptions& options, jobs::Progress::Style 
   }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
-} catch (const fs::filesystem_error& error) {
-  throw_io_error("{}", error.what());
 } catch (const Json::exception& error) {
   throw_io_error("{}: holds a damaged file: {}", options.output, error.what());
 }

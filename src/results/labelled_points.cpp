@@ -1,19 +1,16 @@
 #include "tubebin/results/labelled_points.hpp"
 
-#include <filesystem>
-
 #include "core/json_reader.hpp"
 #include "results/result_files.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/evaluation/cloud_pair.hpp"
 #include "tubebin/evaluation/filtered_truth.hpp"
 #include "tubebin/results/model_cloud.hpp"
 
 namespace tubebin::results {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// The options that model.json says the run had.
 ModelConfig read_run_config(const std::string& path) {
@@ -82,7 +79,7 @@ std::optional<evaluation::LabelledPoints> model_again(const evaluation::RunScore
 std::optional<evaluation::LabelledPoints> labelled_points(const evaluation::RunScore& run) {
   std::optional<evaluation::LabelledPoints> points = kept_points(run);
   if (!points && !run.dataset.empty()) points = model_again(run);
-  if (const std::string model = run.folder + "/model.json"; points && !run.folder.empty() && fs::exists(model))
+  if (const std::string model = run.folder + "/model.json"; points && !run.folder.empty() && path_exists(model))
     points->found_tubes = parse_model_tubes(read_file(model), model);
   return points;
 }

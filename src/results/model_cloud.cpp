@@ -10,6 +10,7 @@
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/cloud/label_colors.hpp"
 #include "tubebin/core/file_record.hpp"
+#include "tubebin/core/path_status.hpp"
 
 namespace tubebin::results {
 namespace {
@@ -95,8 +96,8 @@ ModelConfig load_model_config(const std::string& path) {
 CloudToModel read_cloud_to_model(const std::string& path, double scale) {
   const auto start = std::chrono::steady_clock::now();
   CloudToModel input{.path = path, .cloud = cloud::read_cloud(path, scale), .scene = std::nullopt, .hashes = {}};
-  if (const fs::path scene = fs::path(path).parent_path() / "scene.json"; fs::exists(scene))
-    input.scene = scene::read_scene_json(scene.string());
+  if (const std::string scene = (fs::path(path).parent_path() / "scene.json").string(); path_exists(scene))
+    input.scene = scene::read_scene_json(scene);
   input.read_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return input;
 }

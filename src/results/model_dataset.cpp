@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -13,6 +12,7 @@
 #include "results/results_index.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/core/utf8.hpp"
 #include "tubebin/core/version.hpp"
 #include "tubebin/evaluation/run_score.hpp"
@@ -26,7 +26,6 @@
 namespace tubebin::results {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// The data set's clouds, of each set and number of tubes the first ones alone where options say so.
@@ -127,7 +126,7 @@ jobs::AttemptResult do_run(const ModelingRun& run, const Batch& batch, const Bat
 }
 
 std::string relative_dataset(const BatchOptions& options) {
-  std::string path = fs::relative(fs::absolute(options.dataset), fs::absolute(options.results)).string();
+  std::string path = relative_path(options.dataset, options.results);
   if (!is_utf8(path))
     throw_io_error("{}: its path is no UTF-8 text, which {} needs; give the data set another name", options.dataset,
                    kResultsIndexFile);
@@ -170,7 +169,7 @@ std::vector<CloudFile> clouds_of_shard(const std::vector<CloudFile>& all, const 
 void write_index(const OutputFolder& results, const ResultsIndex& wanted) {
   const std::string path = results.place(kResultsIndexFile);
   const FolderEntry entry = results.make_entry(kResultsIndexFile);
-  if (!fs::exists(path) && create_atomically(entry, format_results_index(wanted))) return;
+  if (!path_exists(path) && create_atomically(entry, format_results_index(wanted))) return;
   const std::string held = read_file(path);
   const std::string merged = format_results_index(merge_results_index(parse_results_index(held, path), wanted, path));
   if (merged != held) write_atomically(entry, merged);
@@ -204,7 +203,7 @@ class CompleteRuns {
   bool contains(const ModelingRun& run) {
     return std::ranges::any_of(folders_, [&](const std::string& folder) {
       const std::string path = fmt::format("{}/{}/result.json", folder, run.folder());
-      return fs::exists(path) && is_current(path, run);
+      return path_exists(path) && is_current(path, run);
     });
   }
 
@@ -252,7 +251,7 @@ class UnfinishedCleanup {
 }  // namespace
 
 BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config,
-                          jobs::Progress::Style progress_style) try {
+                          jobs::Progress::Style progress_style) {
   const auto start = std::chrono::steady_clock::now();
   const scene::DatasetFiles dataset(options.dataset);
   const auto all_clouds = choose_clouds(dataset, options);
@@ -296,8 +295,6 @@ BatchReport model_dataset(const BatchOptions& options, const ModelConfig& config
   report.signal = done.signal;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
-} catch (const fs::filesystem_error& error) {
-  throw_io_error("{}", error.what());
 }
 
 }  // namespace tubebin::results

@@ -10,6 +10,7 @@
 #include "evaluation/parallel.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/evaluation/filtered_truth.hpp"
 #include "tubebin/scene/dataset_files.hpp"
 #include "tubebin/scene/scene_json.hpp"
@@ -22,13 +23,13 @@ namespace fs = std::filesystem;
 /// The first of the files `stem`.pcd and `stem`.ply that exists; empty if neither does.
 std::string find_cloud(const std::string& stem) {
   for (const char* format : {".pcd", ".ply"})
-    if (fs::is_regular_file(stem + format)) return stem + format;
+    if (is_regular_file(stem + format)) return stem + format;
   return "";
 }
 
 /// Names of the data set's scenes that have a cloud, in order.
 std::vector<std::string> list_scenes(const scene::DatasetFiles& dataset) {
-  if (!fs::exists(dataset.dataset())) throw_io_error("{}: is no folder", dataset.dataset());
+  if (!path_exists(dataset.dataset())) throw_io_error("{}: is no folder", dataset.dataset());
   std::vector<std::string> scenes = dataset.scenes();
   std::erase(scenes, ".");
   if (scenes.empty())
@@ -122,7 +123,7 @@ std::string coverage_note(const std::vector<evaluation::RunScore>& runs) {
 /// One folder's predictions, added to the evaluation as `method`.
 void score_folder(const scene::DatasetFiles& dataset, const std::vector<std::string>& scenes, const std::string& folder,
                   const std::string& method, const PredictionOptions& options, evaluation::Evaluation& evaluation) {
-  if (!fs::is_directory(folder)) throw_io_error("{}: is no folder", folder);
+  if (!is_folder(folder)) throw_io_error("{}: is no folder", folder);
   std::vector<PredictionFiles> files;
   for (const std::string& scene : scenes) files.push_back(find_prediction(folder, scene));
   if (std::all_of(files.begin(), files.end(), [](const PredictionFiles& f) { return f.labeled.empty(); }))

@@ -12,6 +12,7 @@
 #include "results/setting_names.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/scene/dataset_files.hpp"
 #include "tubebin/scene/scene_json.hpp"
 
@@ -21,22 +22,22 @@ namespace {
 namespace fs = std::filesystem;
 
 ResultsIndex read_index(const std::string& folder) {
-  if (!fs::is_directory(folder)) throw_io_error("{}: is no folder", folder);
+  if (!is_folder(folder)) throw_io_error("{}: is no folder", folder);
   const std::string path = folder + "/index.json";
-  if (!fs::exists(path))
+  if (!path_exists(path))
     throw_io_error(
         "{}: has no index.json, so it is no results folder of model_tubes{}", folder,
-        fs::exists(folder + "/manifest.jsonl") ? "; it is a data set, which --predictions can be scored on" : "");
+        path_exists(folder + "/manifest.jsonl") ? "; it is a data set, which --predictions can be scored on" : "");
   return parse_results_index(read_file(path), path);
 }
 
 /// Of the last call, and of the shards of one.
 std::map<std::string, std::string> read_failures(const std::string& folder) {
   std::map<std::string, std::string> failures;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
+  for (const std::string& name : names_in_folder(folder)) {
+    const std::string path = folder + "/" + name;
     if (name.starts_with("failures.") && name.ends_with(".jsonl"))
-      failures.merge(parse_failures(read_file(entry.path().string()), entry.path().string()));
+      failures.merge(parse_failures(read_file(path), path));
   }
   return failures;
 }
@@ -70,7 +71,7 @@ evaluation::RunScore read_run(const std::string& folder, evaluation::RunKey key,
   key.tubes = counts.tubes;
   key.case_number = counts.case_number;
   std::vector<evaluation::Centerline> model;
-  if (const std::string file = folder + "/model.json"; truth != nullptr && fs::exists(file))
+  if (const std::string file = folder + "/model.json"; truth != nullptr && path_exists(file))
     for (evaluation::TubeLine& tube : parse_model_tubes(read_file(file), file))
       model.push_back(std::move(tube.centerline));
   evaluation::RunScore run =
@@ -78,11 +79,11 @@ evaluation::RunScore read_run(const std::string& folder, evaluation::RunKey key,
   // Segments without a point in the filtered cloud are tubes of the model all the same.
   run.scores.predicted_tubes = std::max(run.scores.predicted_tubes, counts.model_tubes);
   run.folder = folder;
-  if (fs::exists(folder + "/filtered.pcd") && fs::exists(folder + "/labeled.pcd")) {
+  if (path_exists(folder + "/filtered.pcd") && path_exists(folder + "/labeled.pcd")) {
     run.filtered = folder + "/filtered.pcd";
     run.labeled = folder + "/labeled.pcd";
   }
-  if (const std::string file = folder + "/times.json"; fs::exists(file))
+  if (const std::string file = folder + "/times.json"; path_exists(file))
     run.seconds = parse_modeling_seconds(read_file(file), file);
   return run;
 }
@@ -135,7 +136,7 @@ SceneRuns read_scene_runs(const NamedFolder& named, const CurrentScene& current,
       key.method = named.name_of(method);
       key.ratio = ratio;
       const std::string run = run_folder(scene, method, ratio);
-      if (fs::exists(folder + "/" + run)) {
+      if (path_exists(folder + "/" + run)) {
         result.runs.push_back(read_run(folder + "/" + run, key, current));
         if (current.truth) result.runs.back().dataset = index.dataset;
       } else if (const auto failure = failures.find(run); failure != failures.end()) {
@@ -202,7 +203,7 @@ std::string describe_folder(const NamedFolder& named) {
   const std::string config = named.index.dataset + "/config.yaml";
   const std::string name = named.setting.empty() ? "" : fmt::format(" ({})", named.setting);
   return fmt::format("{}{}:\n{}\n", named.folder, name, named.index.configuration()) +
-         (fs::exists(config) ? fmt::format("\n{}:\n{}\n", config, read_file(config)) : "");
+         (path_exists(config) ? fmt::format("\n{}:\n{}\n", config, read_file(config)) : "");
 }
 
 /// One folder's runs, added to the evaluation.

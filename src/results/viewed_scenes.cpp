@@ -1,11 +1,10 @@
 #include "tubebin/results/viewed_scenes.hpp"
 
-#include <filesystem>
-
 #include "results/result_files.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/evaluation/cloud_pair.hpp"
 #include "tubebin/evaluation/html_report.hpp"
 #include "tubebin/results/labelled_points.hpp"
@@ -14,8 +13,6 @@
 
 namespace tubebin::results {
 namespace {
-
-namespace fs = std::filesystem;
 
 evaluation::LabelledPoints cloud_points(const std::string& path) {
   const CloudToModel input = read_cloud_to_model(path);
@@ -31,7 +28,7 @@ evaluation::LabelledPoints cloud_points(const std::string& path) {
 evaluation::LabelledPoints model_points(const std::string& folder) {
   const std::string filtered_path = folder + "/filtered.pcd", labeled_path = folder + "/labeled.pcd";
   for (const std::string& file : {filtered_path, labeled_path})
-    if (!fs::exists(file))
+    if (!path_exists(file))
       throw_io_error(
           "{}: is not there; model_tubes DATASET --keep-clouds keeps it, and evaluate RESULTS --html shows "
           "scenes without it",
@@ -66,11 +63,11 @@ std::vector<evaluation::SceneView> worst_scenes(const std::string& folder) {
 }  // namespace
 
 std::vector<evaluation::SceneView> viewed_scenes(const std::string& path) {
-  if (!fs::is_directory(path)) return {{path, cloud_points(path)}};
+  if (!is_folder(path)) return {{path, cloud_points(path)}};
   for (const char* file : {"/cloud.pcd", "/cloud.ply"})
-    if (fs::exists(path + file)) return {{path, cloud_points(path + file)}};
-  if (fs::exists(path + "/model.json")) return {{path, model_points(path)}};
-  if (fs::exists(path + "/index.json")) return worst_scenes(path);
+    if (path_exists(path + file)) return {{path, cloud_points(path + file)}};
+  if (path_exists(path + "/model.json")) return {{path, model_points(path)}};
+  if (path_exists(path + "/index.json")) return worst_scenes(path);
   throw_io_error(
       "{}: holds nothing to show; valid: a cloud file, a scene's folder (DATASET/A10/001), or what model_tubes wrote",
       path);

@@ -7,6 +7,7 @@
 
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/core/path_status.hpp"
 
 namespace tubebin::scene {
 namespace {
@@ -21,18 +22,13 @@ std::string packed_name(const ConfinedPath& scene, const ConfinedPath& file) { r
 
 std::string packs_folder(const std::string& dataset) { return dataset + "/packs"; }
 
-DatasetFiles::DatasetFiles(const std::string& dataset) : dataset_(dataset), is_folder_(fs::is_directory(dataset)) {
+DatasetFiles::DatasetFiles(const std::string& dataset) : dataset_(dataset), is_folder_(is_folder(dataset)) {
   if (!is_folder_) {
-    if (fs::is_regular_file(dataset)) add_pack(dataset);
+    if (is_regular_file(dataset)) add_pack(dataset);
     return;
   }
-  std::error_code error;
-  std::vector<std::string> packs;
-  for (const fs::directory_entry& entry : fs::directory_iterator(packs_folder(dataset), error))
-    if (entry.path().extension() == ".tar" && !entry.path().filename().string().starts_with('.'))
-      packs.push_back(entry.path().string());
-  std::sort(packs.begin(), packs.end());
-  for (const std::string& pack : packs) add_pack(pack);
+  for (const std::string& name : names_in_folder(packs_folder(dataset)))
+    if (name.ends_with(".tar") && !name.starts_with('.')) add_pack(packs_folder(dataset) + "/" + name);
 }
 
 void DatasetFiles::add_pack(const std::string& path) {
@@ -95,21 +91,22 @@ std::string DatasetFiles::cloud_of(const ConfinedPath& scene) const {
   return found == kClouds.end() ? "" : *found;
 }
 
-std::vector<std::string> DatasetFiles::scenes() const try {
+std::vector<std::string> DatasetFiles::scenes() const {
   std::set<std::string> scenes;
   for (const auto& packed : packed_)
     if (std::ranges::any_of(kClouds, [&](const char* file) { return find_packed(packed.first, file) != nullptr; }))
       scenes.insert(packed.first);
   if (!is_folder_) return {scenes.begin(), scenes.end()};
-  for (auto entry = fs::recursive_directory_iterator(dataset_); entry != fs::recursive_directory_iterator(); ++entry) {
-    const fs::path& path = entry->path();
+  std::error_code error;
+  fs::path path = dataset_;
+  for (fs::recursive_directory_iterator entry(path, error), end; entry != end; entry.increment(error)) {
+    path = entry->path();
     if (path.filename().string().starts_with('.')) entry.disable_recursion_pending();
     if (path.filename() != kClouds[0] && path.filename() != kClouds[1]) continue;
     scenes.insert(ConfinedPath::parse(path.parent_path().lexically_relative(dataset_).generic_string(), dataset_));
   }
+  if (error) throw_io_error("{}: cannot be searched for clouds: {}", path.string(), error.message());
   return {scenes.begin(), scenes.end()};
-} catch (const fs::filesystem_error& error) {
-  throw_io_error("{}: cannot be searched for clouds: {}", dataset_, error.code().message());
 }
 
 }  // namespace tubebin::scene

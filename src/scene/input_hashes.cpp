@@ -3,18 +3,16 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <tuple>
 
 #include "core/json_reader.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/file_record.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/core/text_scan.hpp"
 
 namespace tubebin::scene {
 namespace {
-
-namespace fs = std::filesystem;
 
 bool is_before(const std::timespec& a, const std::timespec& b) {
   return std::tie(a.tv_sec, a.tv_nsec) < std::tie(b.tv_sec, b.tv_nsec);
@@ -31,14 +29,14 @@ std::string shown(const std::string& hash) { return hash.empty() ? "none" : hash
 
 DatasetHashes::DatasetHashes(const DatasetFiles& files) : files_(files) {
   read_manifest(files.dataset() + "/manifest.jsonl");
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(files.dataset() + "/manifest.parts", error))
-    if (entry.path().extension() == ".jsonl") read_manifest(entry.path().string());
+  const std::string parts = files.dataset() + "/manifest.parts";
+  for (const std::string& name : names_in_folder(parts))
+    if (name.ends_with(".jsonl")) read_manifest(parts + "/" + name);
 }
 
 void DatasetHashes::read_manifest(const std::string& path) {
   struct stat status;
-  if (stat(path.c_str(), &status) != 0) return;
+  if (!path_exists(path) || stat(path.c_str(), &status) != 0) return;
   if (is_before(manifest_written_, status.st_mtim)) manifest_written_ = status.st_mtim;
   const std::string text = read_file(path);
   LineScanner lines(text);

@@ -71,6 +71,24 @@ TEST(Architecture, PublicHeadersHideTheLibrariesBehindTheStages) {
   }
 }
 
+// An error of the standard library names neither program nor what would be right: core/path_status.hpp does.
+TEST(Architecture, NoCallThrowsTheStandardLibrarysFileErrors) {
+  const std::regex call(R"(\b(?:fs|filesystem)::\w*(?:exists|is_\w+|iterator|file_size|status|director\w+|absolute|)"
+                        R"(relative|canonical|current_path|copy\w*|rename|remove\w*|equivalent)\w* ?(?:\w+)?\()");
+  int calls = 0;
+  for (const char* tree : {"/src", "/apps", "/include", "/python/src"})
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(std::string(TUBEBIN_SOURCE_DIR) + tree)) {
+      if (!entry.is_regular_file()) continue;
+      std::istringstream lines(read_text(entry.path()));
+      for (std::string line; std::getline(lines, line);) {
+        if (!std::regex_search(line, call)) continue;
+        ++calls;
+        EXPECT_NE(line.find("error)"), std::string::npos) << entry.path() << ": " << line;
+      }
+    }
+  EXPECT_GT(calls, 5);
+}
+
 /// The shared libraries that the program asks for by itself.
 std::string loaded_by(const std::string& program) {
   return Program({"/usr/bin/readelf", "--dynamic", program_path(program)}).wait().out;
