@@ -4,6 +4,7 @@
 
 #include "export/formats.hpp"
 #include "export/published_layout.hpp"
+#include "export/tube_mesh_file.hpp"
 #include "tubebin/scene/camera.hpp"
 
 namespace tubebin::exports {
@@ -57,6 +58,11 @@ std::string pose_text(const Pose& pose) {
   return fmt::format("{} {:.12g} {:.12g} {:.12g}", triple(pose.translation()), roll, pitch, yaw);
 }
 
+/// Beside the world's file: how a tube that one can look into looks.
+std::string mesh_path(const SceneEntry& entry, std::size_t k) {
+  return published_path(entry, "gazebo_worlds", fmt::format("_{}.stl", k + 1));
+}
+
 Pose at(const Vec3& position) { return make_pose(Quat::Identity(), position); }
 
 /// SDFormat's cameras look along +x with z up, ours along +z with y down.
@@ -70,9 +76,8 @@ Pose camera_pose(const scene::Scanner& scanner) {
 
 class WorldWriter {
  public:
-  WorldWriter(const scene::Scene& scene, const std::vector<cloud::Color>& colors,
-              const physics::PhysicsOptions& physics)
-      : scene_(scene), colors_(colors), physics_(physics) {}
+  WorldWriter(const SceneToExport& exported, const physics::PhysicsOptions& physics)
+      : entry_(exported.entry), scene_(exported.record.scene), colors_(exported.record.colors), physics_(physics) {}
 
   std::string write() {
     out_.line("<?xml version='1.0'?>");
@@ -164,7 +169,7 @@ class WorldWriter {
         const std::string name = i < std::size(kNames) ? kNames[i] : fmt::format("part_{}", i + 1);
         const Pose pose = parts[i].world_from_part * at(parts[i].box.center());
         out_.element("link", named(name), [&] {
-          write_solid(name, pose, physics_.friction_bin, colors_[0],
+          write_solid(name, pose, physics_.friction_bin, &colors_[0],
                       [&] { out_.element("box", [&] { out_.text("size", triple(parts[i].box.sizes())); }); });
         });
       }
@@ -181,9 +186,11 @@ class WorldWriter {
       out_.element("link", named(name), [&] {
         write_inertial(tube);
         const tube::TubeSolids solids = tube::tube_solids(tube, tube.nodes);
-        for (std::size_t i = 0; i < solids.cylinders.size(); ++i)
-          write_cylinder(solids.cylinders[i], i + 1, colors_[k + 1]);
-        for (const tube::JointSphere& joint : solids.joints) write_joint(joint, colors_[k + 1]);
+        const bool is_open = solids.has_open_end();  // SDFormat's shapes have no bore: the mesh is what one sees
+        const cloud::Color* color = is_open ? nullptr : &colors_[k + 1];
+        for (std::size_t i = 0; i < solids.cylinders.size(); ++i) write_cylinder(solids.cylinders[i], i + 1, color);
+        for (const tube::JointSphere& joint : solids.joints) write_joint(joint, color);
+        if (is_open) write_mesh(k);
       });
     });
   }
@@ -202,7 +209,7 @@ class WorldWriter {
     });
   }
 
-  void write_cylinder(const tube::SolidCylinder& cylinder, std::size_t number, cloud::Color color) {
+  void write_cylinder(const tube::SolidCylinder& cylinder, std::size_t number, const cloud::Color* color) {
     const Vec3 axis = cylinder.b - cylinder.a;
     const Pose pose = make_pose(Quat::FromTwoVectors(Vec3::UnitZ(), axis), 0.5 * (cylinder.a + cylinder.b));
     write_solid(fmt::format("cylinder-{}", number), pose, physics_.friction_tube, color, [&] {
@@ -213,20 +220,32 @@ class WorldWriter {
     });
   }
 
-  void write_joint(const tube::JointSphere& joint, cloud::Color color) {
+  void write_joint(const tube::JointSphere& joint, const cloud::Color* color) {
     write_solid(fmt::format("sphere-{}", joint.node + 1), at(joint.center), physics_.friction_tube, color,
                 [&] { out_.element("sphere", [&] { out_.number("radius", joint.radius); }); });
   }
 
-  /// The same shape to collide with and to look at.
+  void write_mesh(std::size_t k) {
+    const std::string path = mesh_path(entry_, k);
+    write_visual("mesh", Pose::Identity(), colors_[k + 1],
+                 [&] { out_.element("mesh", [&] { out_.text("uri", path.substr(path.rfind('/') + 1)); }); });
+  }
+
+  /// A shape to collide with and, where `color` is given, to look at.
   template <typename Shape>
-  void write_solid(const std::string& name, const Pose& pose, double friction, cloud::Color color, const Shape& shape) {
+  void write_solid(const std::string& name, const Pose& pose, double friction, const cloud::Color* color,
+                   const Shape& shape) {
     out_.element("collision", named("collision-" + name), [&] {
       out_.text("pose", pose_text(pose));
       out_.element("geometry", shape);
       write_surface(friction);
       out_.number("max_contacts", kContactsMax);
     });
+    if (color != nullptr) write_visual(name, pose, *color, shape);
+  }
+
+  template <typename Shape>
+  void write_visual(const std::string& name, const Pose& pose, cloud::Color color, const Shape& shape) {
     out_.element("visual", named("visual-" + name), [&] {
       out_.text("pose", pose_text(pose));
       out_.element("geometry", shape);
@@ -258,6 +277,7 @@ class WorldWriter {
     });
   }
 
+  const SceneEntry& entry_;
   const scene::Scene& scene_;
   const std::vector<cloud::Color>& colors_;
   const physics::PhysicsOptions& physics_;
@@ -273,7 +293,11 @@ class SdfFormat : public ExportFormat {
   }
 
   SceneFiles export_scene(const SceneToExport& scene) const override {
-    return {.beside = {}, .scene = {{"", WorldWriter(scene.record.scene, scene.record.colors, physics_).write()}}};
+    SceneFiles files{.beside = {}, .scene = {{"", WorldWriter(scene, physics_).write()}}};
+    const std::vector<scene::PlacedTube>& tubes = scene.record.scene.tubes;
+    for (std::size_t k = 0; k < tubes.size(); ++k)
+      if (tubes[k].solids_in_world().has_open_end()) files.beside[mesh_path(scene.entry, k)] = tube_stl(tubes[k].tube);
+    return files;
   }
 
  private:

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -51,10 +52,14 @@ render::Mesh without_unused(const render::Mesh& mesh) {
   return used;
 }
 
+render::Mesh mesh_of(const tube::Tube& tube) {
+  return render::tube_mesh({tube, Pose::Identity()}, Vec3::Zero(), kFineness);
+}
+
 }  // namespace
 
 TubeMeshFile tube_mesh_file(const tube::Tube& tube) {
-  const render::Mesh mesh = without_unused(render::tube_mesh({tube, Pose::Identity()}, Vec3::Zero(), kFineness));
+  const render::Mesh mesh = without_unused(mesh_of(tube));
   TubeMeshFile file;
   file.ply = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment millimetres\nelement vertex {}\nproperty float x\n"
@@ -75,6 +80,24 @@ TubeMeshFile tube_mesh_file(const tube::Tube& tube) {
   }
   file.diameter_mm = largest_distance(points_mm);
   return file;
+}
+
+std::string tube_stl(const tube::Tube& tube) {
+  constexpr std::size_t kHeaderBytes = 80;
+  const render::Mesh mesh = mesh_of(tube);
+  std::string stl = "a tube, metres";
+  stl.resize(kHeaderBytes, ' ');
+  append(stl, static_cast<std::uint32_t>(mesh.indices.size() / 3));
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    std::array<Eigen::Vector3f, 3> corners;
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      corners[corner] = mesh.vertices[mesh.indices[i + corner]].position;
+    const Eigen::Vector3f normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+    for (const Eigen::Vector3f& vector : {normal, corners[0], corners[1], corners[2]})
+      for (int axis = 0; axis < 3; ++axis) append(stl, vector[axis]);
+    append(stl, std::uint16_t{0});
+  }
+  return stl;
 }
 
 }  // namespace tubebin::exports

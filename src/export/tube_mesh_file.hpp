@@ -1,4 +1,4 @@
-// A tube's mesh for pose estimation, in its own frame, millimetres.
+// A tube's mesh in its own frame, as files that other programs read.
 #pragma once
 
 #include <string>
@@ -13,6 +13,10 @@ struct TubeMeshFile {
   double diameter_mm = 0.0;  ///< largest distance of two vertices
 };
 
+/// For pose estimation, millimetres.
 TubeMeshFile tube_mesh_file(const tube::Tube& tube);
+
+/// For simulators: binary STL, metres.
+std::string tube_stl(const tube::Tube& tube);
 
 }  // namespace tubebin::exports

@@ -221,10 +221,7 @@ Mesh tube_mesh(const scene::PlacedTube& placed, const Vec3& origin, const Finene
   Mesh mesh;
   MeshBuilder builder(mesh, origin, fineness);
   const tube::TubeSolids solids = placed.solids_in_world();
-  const bool is_open = std::ranges::any_of(solids.cylinders, [](const tube::SolidCylinder& cylinder) {
-    return cylinder.bore_radius > 0.0 && (cylinder.is_free_a || cylinder.is_free_b);
-  });
-  if (is_open) add_pipes(placed, solids, builder);
+  if (solids.has_open_end()) add_pipes(placed, solids, builder);
   else add_solids(solids, builder);
   return mesh;
 }

@@ -1,6 +1,14 @@
 #include "tubebin/tube/solids.hpp"
 
+#include <algorithm>
+
 namespace tubebin::tube {
+
+bool TubeSolids::has_open_end() const {
+  return std::ranges::any_of(cylinders, [](const SolidCylinder& cylinder) {
+    return cylinder.bore_radius > 0.0 && (cylinder.is_free_a || cylinder.is_free_b);
+  });
+}
 
 TubeSolids tube_solids(const Tube& tube, const std::vector<Vec3>& nodes) {
   const auto bore_of = [&](double radius) { return tube.wall_thickness > 0.0 ? radius - tube.wall_thickness : 0.0; };

@@ -298,8 +298,7 @@ WORLD = ["gravity", "magnetic_field", "atmosphere", "scene/ambient", "scene/back
          "physics/ode/constraints/contact_surface_layer", "physics/ode/constraints/cfm", "physics/ode/constraints/erp"]
 CAMERA = ["horizontal_fov", "image/width", "image/height", "image/format", "clip/near", "clip/far", "depth_camera/output"]
 TUBE = ["static", "pose", "link/inertial/pose", "link/inertial/mass", "link/visual/pose", "link/visual/geometry",
-        "link/visual/material/ambient", "link/collision/geometry/cylinder/radius",
-        "link/collision/geometry/cylinder/length"] + [
+        "link/visual/material/ambient"] + [
             "link/inertial/inertia/" + key for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")] + [
                 "link/" + leaf for leaf in PART]
 BIN = ["static", "link/collision/geometry/box/size"] + ["link/" + leaf for leaf in PART]
@@ -332,6 +331,7 @@ def pose_of(element):
 
 
 def check_sdf(dataset, export, *published_worlds):
+    pipes, in_bores = False, 0
     published = [set(element_paths(ElementTree.parse(path).find("world"))) for path in published_worlds]
     for _, name, scene in scenes_of(dataset, export):
         root = ElementTree.parse(f"{export}/{published_name(name, 'gazebo_worlds', '.world')}").getroot()
@@ -349,8 +349,71 @@ def check_sdf(dataset, export, *published_worlds):
         optical = np.array(scene.truth["scanner"]["pose"]["rotation"])
         assert np.allclose(turn[:, 0], optical[:, 2]) and np.allclose(turn[:, 2], -optical[:, 1])
         assert not [path for path in BIN if models["bin"].find(path) is None]
+        folder = f"{export}/{published_name(name, 'gazebo_worlds', '')}".rsplit("/", 1)[0]
         for tube in scene.truth["tubes"]:
-            check_sdf_tube(models[str(tube["label"])], tube, f"{name}, tube {tube['label']}")
+            where = f"{name}, tube {tube['label']}"
+            model = models[str(tube["label"])]
+            check_sdf_tube(model, tube, where)
+            pipes |= tube["wall_thickness"] > 0
+            in_bores += check_sdf_looks(model, scene.xyz[scene.seen & (scene.label == tube["label"])], folder, where)
+    assert in_bores > 0 or not pipes, "no point of the scans lies in a bore"
+
+
+def check_sdf_looks(model, points, folder, where):
+    """The scanned points lie on what Gazebo shows. Returns how many of them lie deep within what tubes collide with."""
+    turn, place = pose_of(model)
+    points = (points.astype(float) - place) @ turn
+    depth = -outside_of(model.findall("link/collision"), points)
+    visuals = model.findall("link/visual")
+    meshes = [visual.findtext("geometry/mesh/uri") for visual in visuals if visual.find("geometry/mesh") is not None]
+    if not meshes:
+        assert np.abs(outside_of(visuals, points)).max(initial=0) < 1e-5, where
+        return 0
+    assert len(meshes) == len(visuals) == 1, where
+    triangles = load_stl(f"{folder}/{meshes[0]}")
+    chosen = np.concatenate([np.flatnonzero(depth > 1e-3)[:200], np.flatnonzero(depth <= 1e-3)[::20]])
+    assert max((distance_to_triangles(point, triangles) for point in points[chosen]), default=0) < 2e-4, where
+    return (depth > 1e-3).sum()
+
+
+def outside_of(parts, points):
+    """How far points lie outside of the union of cylinders and balls; below 0 within."""
+    nearest = np.full(len(points), np.inf)
+    for part in parts:
+        turn, place = pose_of(part)
+        local = (points - place) @ turn
+        if part.find("geometry/sphere") is not None:
+            outside = np.linalg.norm(local, axis=1) - float(part.findtext("geometry/sphere/radius"))
+        else:
+            beside = np.hypot(local[:, 0], local[:, 1]) - float(part.findtext("geometry/cylinder/radius"))
+            beyond = np.abs(local[:, 2]) - float(part.findtext("geometry/cylinder/length")) / 2
+            outside = np.hypot(np.maximum(beside, 0), np.maximum(beyond, 0)) + np.minimum(np.maximum(beside, beyond), 0)
+        nearest = np.minimum(nearest, outside)
+    return nearest
+
+
+def load_stl(path):
+    data = open(path, "rb").read()
+    count = int.from_bytes(data[80:84], "little")
+    assert len(data) == 84 + 50 * count, path
+    facets = np.frombuffer(data[84:], [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    return facets["corners"].astype(float)
+
+
+def distance_to_triangles(point, triangles):
+    """To the planes where the point lies above a triangle, else to the edges."""
+    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    normal = np.cross(b - a, c - a)
+    area = np.linalg.norm(normal, axis=1)
+    a, b, c, normal = a[area > 0], b[area > 0], c[area > 0], normal[area > 0] / area[area > 0, None]
+    above = np.full(len(a), True)
+    distance = np.full(len(a), np.inf)
+    for begin, end in ((a, b), (b, c), (c, a)):
+        edge = end - begin
+        above &= (np.cross(edge, point - begin) * normal).sum(1) >= 0
+        along = np.clip(((point - begin) * edge).sum(1) / (edge ** 2).sum(1), 0, 1)[:, None]
+        distance = np.minimum(distance, np.linalg.norm(begin + along * edge - point, axis=1))
+    return np.where(above, np.abs(((point - a) * normal).sum(1)), distance).min()
 
 
 def check_sdf_tube(model, tube, where):

@@ -83,6 +83,7 @@ TEST_F(ExportDataset, KindsAreObjectsCategoriesAndNames) {
   expect_agreement_of(kinds, "bop", {"--crop"}, {"crop"});
   expect_agreement_of(kinds, "coco", {});
   expect_agreement_of(kinds, "npz", {"--normals"});
+  expect_agreement_of(kinds, "sdf", {});
 }
 
 TEST_F(ExportDataset, RefusesWhatAFormatLacks) {

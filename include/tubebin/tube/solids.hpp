@@ -32,6 +32,9 @@ struct JointSphere {
 struct TubeSolids {
   std::vector<SolidCylinder> cylinders;  ///< in the order of Tube::cylinders
   std::vector<JointSphere> joints;       ///< by node
+
+  /// Whether one can look into a bore.
+  bool has_open_end() const;
 };
 
 /// In the frame of `nodes`, which are the tube's in any pose: its own, the world's or the scanner's.
