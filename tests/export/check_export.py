@@ -136,6 +136,10 @@ def check_bop(dataset, export, crop=""):
             assert open(f"{export}/{path}", "rb").read() == open(f"{export}/models_eval{path[6:]}", "rb").read()
             model = load_ply(f"{export}/{path}")
             check_model(model, models_info[number_of_object], pose, K, whole, where)
+            points = 1000 * scene.xyz[scene.seen & (scene.label == k + 1)].astype(float) @ R.T + camera["cam_t_w2c"]
+            points = (points - pose["cam_t_m2c"]) @ np.reshape(pose["cam_R_m2c"], (3, 3))
+            off = [distance_to_triangles(point, model["pts"][model["faces"]]) for point in points[::20]]
+            assert max(off, default=0) < 0.25, (where, "mm between a scanned point and the mesh", max(off))
             check_symmetries(model["pts"], models_info[number_of_object], tube, where)
         visible_enough += [{"im_id": 0, "inst_count": count, "obj_id": number_of_object, "scene_id": number}
                            for number_of_object, count in sorted(instances.items())]
