@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
@@ -81,7 +82,8 @@ int run_program(const char* name, CLI::App& app, int argc, char** argv, const Ru
   } catch (const ConfigError& error) {
     code = fail(error.what(), ExitCode::usage);
   } catch (const std::bad_alloc&) {
-    code = fail("out of memory", ExitCode::failed);
+    const std::string problem = fmt::format("out of memory in: {}", fmt::join(argv + 1, argv + argc, " "));
+    code = fail(problem.c_str(), ExitCode::failed);
   } catch (const std::exception& error) {
     code = fail(error.what(), ExitCode::failed);
   }

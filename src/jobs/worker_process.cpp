@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <new>
 #include <stdexcept>
 #include <thread>
 
@@ -71,6 +72,8 @@ class Server {
       send_answer(socket_, WorkerAnswer::Kind::io_error, error.what());
     } catch (const ConfigError& error) {
       send_answer(socket_, WorkerAnswer::Kind::config_error, error.what());
+    } catch (const std::bad_alloc&) {
+      send_answer(socket_, WorkerAnswer::Kind::failed, std::string("crash") + kDivider + "out of memory");
     } catch (const std::exception& error) {
       send_answer(socket_, WorkerAnswer::Kind::failed, std::string("crash") + kDivider + error.what());
     }

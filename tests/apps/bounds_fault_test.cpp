@@ -186,5 +186,27 @@ TEST_F(Bounds, PipesAndDevicesAreNotReadFrom) {
   }
 }
 
+// Wherever it runs out: from where the program cannot start to where it needs no more.
+TEST_F(Bounds, MemoryThatRunsOutIsSaidWithTheFile) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer ends the program where memory runs out";
+#endif
+  const std::string cloud = TUBEBIN_SOURCE_DIR "/data/A10/003/cloud.pcd";
+  int said = 0;
+  for (int kilobytes = 100'000; kilobytes < 300'000; kilobytes += 2'000) {
+    const ProgramResult result = Program({"/bin/bash", "-c",
+                                          fmt::format("ulimit -v {}; exec {} {} --output {}", kilobytes,
+                                                      program_path("model_tubes"), cloud, folder_ / "modelled")})
+                                     .wait();
+    if (result.exit_code == 127) continue;  // its libraries found no room
+    EXPECT_EQ(result.error.find("bad_alloc"), std::string::npos) << result.error;
+    if (result.error.find("memory") == std::string::npos) continue;
+    ++said;
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, HasSubstr(cloud)) << kilobytes;
+  }
+  EXPECT_GT(said, 0);
+}
+
 }  // namespace
 }  // namespace tubebin::testing

@@ -96,13 +96,15 @@ TEST(WorkerPool, CountsACrashAsAFailedAttempt) {
 }
 
 TEST(WorkerPool, CountsAnExitAndAnUnexpectedExceptionAsCrashes) {
-  const PoolRun r = run(2, {.workers = 1, .attempts_max = 1}, [](std::size_t job, int) -> AttemptResult {
+  const PoolRun r = run(3, {.workers = 1, .attempts_max = 1}, [](std::size_t job, int) -> AttemptResult {
     if (job == 0) _exit(0);
+    if (job == 2) throw std::bad_alloc();
     throw std::logic_error("no such tube");
   });
   EXPECT_EQ(r.outcomes.at(0).failed.at(0).reason, "crash");
   EXPECT_EQ(r.outcomes.at(1).failed.at(0).reason, "crash");
   EXPECT_EQ(r.outcomes.at(1).failed.at(0).detail, "no such tube");
+  EXPECT_EQ(r.outcomes.at(2).failed.at(0).detail, "out of memory");
 }
 
 TEST(WorkerPool, EndsAHangAtTheTimeLimit) {
