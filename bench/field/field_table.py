@@ -121,11 +121,17 @@ def score(truth, full):
     return counts[1:, 1:][row, column].sum() / tubes, counts[0, 1:].sum() / tubes, off
 
 
+def split_arguments():
+    """The script's own arguments, and those after -- for model_tubes."""
+    own, options = sys.argv[1:], []
+    if '--' in own:
+        options = own[own.index('--') + 1:]
+        own = own[:own.index('--')]
+    return own, options
+
+
 def main():
-    arguments, options = sys.argv[1:], []
-    if '--' in arguments:
-        options = arguments[arguments.index('--') + 1:]
-        arguments = arguments[:arguments.index('--')]
+    arguments, options = split_arguments()
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('model_tubes')
     parser.add_argument('folder')

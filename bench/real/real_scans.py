@@ -12,7 +12,7 @@ OPTIONs go to model_tubes. Needs numpy, scipy and pillow.
 Rods: recall is the share of the rods' points that carry their rod's label, labels matched one to one (Hungarian); points
 that nobody could tell (255) are left out. false: other points with a rod's label, as a share of the rods' points.
 """
-import argparse, colorsys, re, subprocess, sys, tempfile
+import argparse, colorsys, re, sys, tempfile
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +20,7 @@ from PIL import Image
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / 'field'))
-from field_table import model, read_pcd, score, write_organized
+from field_table import model, score, split_arguments, write_organized
 
 # The depth images do not say their scale. With these the rods' straight stretches come out round: 8 bit over 62 mm.
 FOCAL_PX, FAR_M, RANGE_M = 2431.0, 1.128, 0.062
@@ -118,10 +118,7 @@ def cans(program, folder, options):
 
 
 def main():
-    arguments, options = sys.argv[1:], []
-    if '--' in arguments:
-        options = arguments[arguments.index('--') + 1:]
-        arguments = arguments[:arguments.index('--')]
+    arguments, options = split_arguments()
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('model_tubes')
     parser.add_argument('clones', type=Path)
