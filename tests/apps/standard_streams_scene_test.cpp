@@ -64,7 +64,7 @@ TEST_F(StandardStreams, ResultsThatCannotBeWrittenAreAnError) {
 
 TEST_F(StandardStreams, AFileSizeLimitIsAnErrorThatNamesTheFile) {
   const ProgramResult result =
-      run({"/bin/bash", "-c", "ulimit -f 8; cd " + (folder_ / "") + "; exec " + generate_ + " -q"});
+      run({"/bin/bash", "-c", "ulimit -f 12; cd " + (folder_ / "") + "; exec " + generate_ + " -q"});
   EXPECT_EQ(result.exit_code, 1) << result.signal;
   EXPECT_THAT(result.error, HasSubstr("cloud.pcd: cannot be written: File too large"));
   EXPECT_EQ(shell(generate_ + " -q"), 0);
