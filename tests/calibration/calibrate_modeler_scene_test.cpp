@@ -245,6 +245,20 @@ TEST_F(CalibrateModeler, CtrlCKeepsWhatIsDone) {
   EXPECT_EQ(run(command(output)).exit_code, 0);
 }
 
+TEST_F(CalibrateModeler, SigtermIsHeardAlsoWhereScenesAreInPacks) {
+  const std::string packed = file("packed"), output = file("of_packs.yaml");
+  ASSERT_EQ(run_generate_dataset({file("quick.yaml"), "--output", packed, "--pack"}).exit_code, 0);
+  std::vector<std::string> call = command(output);
+  call[1] = packed;
+  Program program(call);
+  wait_until([&] { return fs::exists(output + ".trials"); });  // before the first pack is read
+  kill(program.process(), SIGTERM);
+  EXPECT_EQ(program.wait().exit_code, 128 + SIGTERM);
+  EXPECT_FALSE(fs::exists(output));
+  EXPECT_TRUE(processes_of(output).empty());
+  EXPECT_EQ(run(call).exit_code, 0);
+}
+
 TEST_F(CalibrateModeler, AnotherConfigurationIsRefusedAndALargerBudgetGoesOn) {
   const std::string output = file("more.yaml");
   ASSERT_EQ(run(command(output)).exit_code, 0);
