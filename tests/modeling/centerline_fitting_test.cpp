@@ -33,37 +33,6 @@ TEST(CenterlineFitting, FindsTheCylindersThatPointsLieOn) {
     }
 }
 
-double sharpest_turn(const std::vector<Vec3>& nodes) {  // cosine
-  double least = 1.0;
-  for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
-    least = std::min(least, (nodes[k] - nodes[k - 1]).normalized().dot((nodes[k + 1] - nodes[k]).normalized()));
-  return least;
-}
-
-/// Waves of a quarter of a radius, as coarse steps of depth leave them once a scanner has smoothed them, tilt the normals.
-TEST(CenterlineFitting, DoesNotTurnBackWhereTheSurfaceIsRough) {
-  const std::vector<Vec3> nodes = {{-0.15, 0, 0}, {0, 0.01, 0}, {0.06, 0.1, 0.01}};
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    FilteredCloud cloud = upper_half_of(nodes);
-    Random random(seed);
-    for (int wave = 0; wave < 4; ++wave) {
-      const double length = random.uniform(1.0, 3.0) * kRadius, angle = random.uniform(0.0, std::numbers::pi);
-      const Vec3 rate = 2.0 * std::numbers::pi / length * Vec3(std::cos(angle), std::sin(angle), 0.0);
-      const double height = 0.06 * kRadius, phase = random.uniform(0.0, 6.0);
-      for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-        const double at = rate.dot(cloud.points[i].cast<double>()) + phase;
-        cloud.points[i].z() += static_cast<float>(height * std::sin(at));
-        cloud.normals[i] = (cloud.normals[i] - (height * std::cos(at) * rate).cast<float>()).normalized();
-      }
-    }
-    const std::optional<TubePiece> piece = fit_all(cloud, kRadius);
-    ASSERT_TRUE(piece.has_value());
-    EXPECT_GT(sharpest_turn(piece->nodes), 0.0) << "seed " << seed;
-    for (const Vec3& node : piece->nodes)
-      EXPECT_LT(distance_to_polyline(node, nodes), 0.5 * kRadius) << "seed " << seed;
-  }
-}
-
 TEST(CenterlineFitting, GivesAStretchShorterThanItIsWideTheAxisOfItsNormals) {
   const std::vector<Vec3> nodes = {{0, 0, 0}, {0.012, 0.009, 0}};
   const std::optional<TubePiece> piece = fit_all(upper_half_of(nodes), kRadius);

@@ -191,20 +191,6 @@ void merge_close_joints(std::vector<Vec3>& nodes, double closest) {
   }
 }
 
-/// A tube does not turn back: of the joints at which the nodes do, the sharpest goes, until none does.
-void drop_folds(std::vector<Vec3>& nodes) {
-  while (nodes.size() > 2) {
-    std::size_t sharpest = 0;
-    double least = 0.0;
-    for (std::size_t k = 1; k + 1 < nodes.size(); ++k) {
-      const double turn = (nodes[k] - nodes[k - 1]).normalized().dot((nodes[k + 1] - nodes[k]).normalized());
-      if (turn < least) least = turn, sharpest = k;
-    }
-    if (sharpest == 0) return;
-    nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(sharpest));
-  }
-}
-
 /// Of so many of a stretch's points, one votes. Where smooth() takes means of r / 3 of a fully visible tube, eight
 /// votes, each off by r / 6, make them good to r / 17; a short stretch needs some hundred votes in all.
 std::size_t vote_stride(std::size_t points, double radius, double spacing) {
@@ -271,7 +257,6 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const Stretc
     simplify(piece.nodes, 0, piece.nodes.size() - 1, radius / 50.0, nodes);
     drop_joints_at_ends(nodes, radius);
     merge_close_joints(nodes, radius / 2.0);
-    drop_folds(nodes);
     if (round > 0 && nodes.size() == piece.nodes.size()) break;
     piece.nodes = std::move(nodes);
     fit_surface(piece.nodes, surface, radius);
