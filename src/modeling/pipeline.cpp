@@ -13,6 +13,7 @@
 #include "modeling/fitting/tube_classes.hpp"
 #include "modeling/input/background.hpp"
 #include "modeling/input/bin_pose.hpp"
+#include "modeling/input/grid_viewpoint.hpp"
 #include "modeling/input/normals.hpp"
 #include "modeling/joining/branch_joining.hpp"
 #include "modeling/joining/tube_joining.hpp"
@@ -202,6 +203,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   ModelingInput input = told;
   const std::vector<cloud::Point> measured = without_zero_points(told.points);
   if (!measured.empty()) input.points = measured;
+  if (std::string doubt = check_viewpoint(input); !doubt.empty()) result.found.doubts.push_back(std::move(doubt));
   const ViewProjection projection = view_of(input);
   Background background = find_surroundings(input, projection, options.filtering);
   if (told.bin && !input.bin)

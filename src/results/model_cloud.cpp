@@ -127,7 +127,8 @@ modeling::ModelingResult model_cloud(const CloudToModel& input, const ModelConfi
   const modeling::ModelingInput positions{.points = input.cloud.points,
                                           .world_from_sensor = choose_sensor(input, config),
                                           .bin = choose_bin(input, config),
-                                          .world_from_bin = choose_bin_pose(config)};
+                                          .world_from_bin = choose_bin_pose(config),
+                                          .width = input.cloud.height > 1 ? input.cloud.width : 0};
   try {
     return modeling::model_tubes(positions, config.modeling);
   } catch (const IoError& error) {

@@ -15,6 +15,7 @@ struct ModelingInput {
   Pose world_from_sensor = Pose::Identity();  ///< sensor frame: z along the view
   std::optional<scene::Bin> bin;              ///< the known bin; without it, floor and walls are found in the cloud
   Pose world_from_bin = Pose::Identity();
+  std::uint32_t width = 0;  ///< of an organized cloud, whose points stand row by row; 0: in any order
 };
 
 }  // namespace tubebin::modeling

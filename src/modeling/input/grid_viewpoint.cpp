@@ -1,0 +1,115 @@
+#include "modeling/input/grid_viewpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tubebin/core/geometry.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// A measured point and its pixel, in widths of the picture from its corner.
+struct Sample {
+  Vec3 point;
+  Eigen::Vector2d pixel;
+};
+
+/// A thousand of the points, those of them that were measured, evenly spread.
+std::vector<Sample> sample_grid(std::span<const cloud::Point> points, std::uint32_t width) {
+  constexpr std::size_t kSamples = 1000;
+  std::vector<Sample> samples;
+  for (std::size_t k = 0; k < kSamples; ++k) {
+    // Steps of the golden ratio meet all rows and columns.
+    const auto i = static_cast<std::size_t>(std::fmod(0.6180339887498949 * static_cast<double>(k), 1.0) *
+                                            static_cast<double>(points.size()));
+    if (!cloud::is_finite(points[i])) continue;
+    samples.push_back({.point = points[i].cast<double>(),
+                       .pixel = Eigen::Vector2d(double(i % width), double(i / width)) / double(width)});
+  }
+  return samples;
+}
+
+Vec3 middle_of(const std::vector<Sample>& samples) {
+  Vec3 sum = Vec3::Zero();
+  for (const Sample& sample : samples) sum += sample.point;
+  return sum / static_cast<double>(samples.size());
+}
+
+std::string place_text(const Vec3& p) { return fmt::format("({:.3f}, {:.3f}, {:.3f})", p.x(), p.y(), p.z()); }
+
+}  // namespace
+
+// Direct linear transform (Hartley and Zisserman 2004, "Multiple View Geometry", 7.1): the camera matrix P with pixel ~ P
+// point is the direction in which the equations have the least squares; its null vector is where the camera stands.
+std::optional<Vec3> viewpoint_of_grid(std::span<const cloud::Point> points, std::uint32_t width) {
+  constexpr std::size_t kFewest = 100;
+  constexpr double kWorstPixels = 2.0;
+  const std::vector<Sample> samples = sample_grid(points, width);
+  if (samples.size() < kFewest) return std::nullopt;
+  const Vec3 middle = middle_of(samples);
+  double spread = 0.0;
+  for (const Sample& sample : samples) spread += (sample.point - middle).norm();
+  spread /= static_cast<double>(samples.size());
+
+  using Row = Eigen::Matrix<double, 12, 1>;
+  Eigen::Matrix<double, 12, 12> squares = Eigen::Matrix<double, 12, 12>::Zero();
+  std::vector<Eigen::Vector4d> places;
+  for (const Sample& sample : samples) {
+    const Eigen::Vector4d place = ((sample.point - middle) / spread).homogeneous();
+    places.push_back(place);
+    for (int axis = 0; axis < 2; ++axis) {
+      Row row = Row::Zero();
+      row.segment<4>(4 * axis) = place;
+      row.tail<4>() = -sample.pixel(axis) * place;
+      squares += row * row.transpose();
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 12, 12>> solver(squares);
+  const auto& least = solver.eigenvalues();
+  // Of points in a plane several cameras are as good.
+  if (least(1) < 100.0 * least(0) || least(1) < 1e-9 * least(11)) return std::nullopt;
+  const Row p = solver.eigenvectors().col(0);
+  Eigen::Matrix<double, 3, 4> camera;
+  camera << p.segment<4>(0).transpose(), p.segment<4>(4).transpose(), p.segment<4>(8).transpose();
+
+  double errors = 0.0;
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    errors += ((camera * places[k]).hnormalized() - samples[k].pixel).squaredNorm();
+  if (!(std::sqrt(errors / static_cast<double>(samples.size())) * width < kWorstPixels)) return std::nullopt;
+  const Eigen::FullPivLU<Eigen::Matrix3d> rays(camera.leftCols<3>());
+  if (!rays.isInvertible()) return std::nullopt;  // parallel rays
+  return middle - spread * rays.solve(Vec3(camera.col(3)));
+}
+
+std::string check_viewpoint(ModelingInput& input) {
+  constexpr double kFarOff = 15.0;  // degrees, as the points see it
+  // A scanner's view is narrower than a right angle about its axis; of directions all around, the mean is next to nothing.
+  constexpr double kAllAround = 0.5;
+  const Vec3 told = input.world_from_sensor.translation();
+  const std::vector<Sample> samples = sample_grid(input.points, std::max(input.width, 1U));
+  if (samples.empty()) return {};
+  const Vec3 middle = middle_of(samples);
+  const auto seen = input.width > 0 ? viewpoint_of_grid(input.points, input.width) : std::nullopt;
+  if (seen) {
+    const double off =
+        std::acos(std::clamp((told - middle).normalized().dot((*seen - middle).normalized()), -1.0, 1.0));
+    if (off < radians(kFarOff)) return {};
+    input.world_from_sensor.translation() = *seen;
+    return fmt::format(
+        "the cloud was not seen from {}, as VIEWPOINT or --viewpoint has it: by its rows and columns the scanner stood at "
+        "{}, which is taken",
+        place_text(told), place_text(*seen));
+  }
+  Vec3 directions = Vec3::Zero();
+  for (const Sample& sample : samples) directions += (sample.point - told).normalized();
+  if (directions.norm() > kAllAround * static_cast<double>(samples.size())) return {};
+  return fmt::format("points lie all around the viewpoint {}: where did the scanner stand (VIEWPOINT or --viewpoint)?",
+                     place_text(told));
+}
+
+}  // namespace tubebin::modeling
