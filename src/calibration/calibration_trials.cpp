@@ -135,14 +135,13 @@ std::vector<std::vector<double>> CalibrationTrials::recalls(const std::vector<Se
 void CalibrationTrials::find_missing(const std::vector<Trial>& missing) {
   if (const int signal = jobs::StopNote::received(); signal != 0) throw CalibrationStopped{signal};
   if (missing.empty()) return;
-  std::vector<std::size_t> jobs(missing.size());
-  for (std::size_t i = 0; i < jobs.size(); ++i) jobs[i] = i;
-  const jobs::PoolOptions pool{.workers = options_.jobs, .attempts_max = 1, .attempt_time_limit = options_.time_limit};
-  const jobs::PoolEvents events{
-      .on_finished = [&](const jobs::JobOutcome& outcome) { keep(missing[outcome.job], outcome); },
-      .on_tick = [&] { progress_.show(); }};
-  const jobs::PoolReport report = jobs::run_jobs(
-      jobs, pool, [&](std::size_t job, int) { return attempt(missing[job]); }, events);
+  const jobs::BatchReport report =
+      jobs::run_batch({.size = missing.size(),
+                       .noun = "clouds",
+                       .pool = {.workers = options_.jobs, .attempts_max = 1, .attempt_time_limit = options_.time_limit},
+                       .shared_progress = &progress_,
+                       .work = [&](std::size_t job, int) { return attempt(missing[job]); },
+                       .on_finished = [&](const jobs::JobOutcome& outcome) { keep(missing[outcome.job], outcome); }});
   if (report.signal != 0) throw CalibrationStopped{report.signal};
 }
 
@@ -172,7 +171,6 @@ void CalibrationTrials::keep(const Trial& trial, const jobs::JobOutcome& outcome
   recall_of_[trial.key] = recall;
   used_[trial.key] = true;
   ++runs_made_;
-  progress_.count_done();
 }
 
 }  // namespace tubebin::calibration

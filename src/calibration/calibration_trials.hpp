@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "tubebin/calibration/calibration.hpp"
+#include "tubebin/jobs/batch.hpp"
 #include "tubebin/jobs/line_journal.hpp"
-#include "tubebin/jobs/worker_pool.hpp"
 #include "tubebin/results/modeling_run.hpp"
 
 namespace tubebin::calibration {

@@ -1,6 +1,7 @@
 #include "tubebin/jobs/batch.hpp"
 
 #include <chrono>
+#include <optional>
 
 namespace tubebin::jobs {
 
@@ -10,7 +11,9 @@ BatchReport run_batch(const Batch& batch) {
   for (std::size_t job = 0; job < batch.size; ++job)
     if (!batch.is_done(job)) missing.push_back(job);
 
-  Progress progress(missing.size(), batch.noun, batch.progress);
+  std::optional<Progress> own;
+  Progress& progress =
+      batch.shared_progress ? *batch.shared_progress : own.emplace(missing.size(), batch.noun, batch.progress);
   const PoolEvents events{.on_finished =
                               [&](const JobOutcome& outcome) {
                                 batch.on_finished(outcome);

@@ -14,6 +14,7 @@ struct Batch {
   std::string noun;      ///< that the progress calls them: "scenes"
   PoolOptions pool;
   Progress::Style progress = Progress::Style::automatic;
+  Progress* shared_progress = nullptr;  ///< of several batches, instead of one of its own
   std::function<bool(std::size_t job)> is_done = [](std::size_t) { return false; };
   Work work;
   std::function<void(const JobOutcome&)> on_finished;  ///< in the calling process, as each job ends
