@@ -28,8 +28,9 @@ std::vector<Sample> sample_grid(std::span<const cloud::Point> points, std::uint3
     const auto i = static_cast<std::size_t>(std::fmod(0.6180339887498949 * static_cast<double>(k), 1.0) *
                                             static_cast<double>(points.size()));
     if (!cloud::is_finite(points[i])) continue;
-    samples.push_back({.point = points[i].cast<double>(),
-                       .pixel = Eigen::Vector2d(double(i % width), double(i / width)) / double(width)});
+    const std::size_t row = i / width, column = i % width;
+    samples.push_back(
+        {.point = points[i].cast<double>(), .pixel = Eigen::Vector2d(double(column), double(row)) / double(width)});
   }
   return samples;
 }
