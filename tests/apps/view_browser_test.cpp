@@ -136,7 +136,8 @@ TEST_F(ViewInBrowser, ShowsErrorsAndATubesNumbers) {
   const CommandResult scored = testing::run_command(
       fmt::format("{0}/evaluate --filtered {1}/wrong/filtered.pcd --labeled {1}/wrong/labeled.pcd --format json",
                   TUBEBIN_BIN_DIR, folder_.path().string()));
-  for (const nlohmann::json& pair : nlohmann::json::parse(scored.output)["matching"]) {
+  const nlohmann::json scores = nlohmann::json::parse(scored.output);
+  for (const nlohmann::json& pair : scores["matching"]) {
     const std::string tube = "tube " + pair["ground_truth"].get<std::string>();
     ASSERT_TRUE(seen.contains(tube)) << tube << " was not clicked: " << seen;
     EXPECT_THAT(seen[tube].get<std::string>(),

@@ -251,7 +251,7 @@ TEST_F(CalibrateModeler, SigtermIsHeardAlsoWhereScenesAreInPacks) {
   std::vector<std::string> call = command(output);
   call[1] = packed;
   Program program(call);
-  wait_until([&] { return fs::exists(output + ".trials"); });  // before the first pack is read
+  wait_until([&] { return fs::exists(output + ".trials/runs.jsonl"); });  // before the first pack is read
   kill(program.process(), SIGTERM);
   EXPECT_EQ(program.wait().exit_code, 128 + SIGTERM);
   EXPECT_FALSE(fs::exists(output));
