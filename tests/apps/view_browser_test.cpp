@@ -137,13 +137,13 @@ TEST_F(ViewInBrowser, ShowsErrorsAndATubesNumbers) {
       fmt::format("{0}/evaluate --filtered {1}/wrong/filtered.pcd --labeled {1}/wrong/labeled.pcd --format json",
                   TUBEBIN_BIN_DIR, folder_.path().string()));
   const nlohmann::json scores = nlohmann::json::parse(scored.output);
-  for (const nlohmann::json& pair : scores["matching"]) {
-    const std::string tube = "tube " + pair["ground_truth"].get<std::string>();
+  for (const nlohmann::json& pair : scores.at("matching")) {
+    const std::string tube = "tube " + pair.at("ground truth").get<std::string>();
     ASSERT_TRUE(seen.contains(tube)) << tube << " was not clicked: " << seen;
     EXPECT_THAT(seen[tube].get<std::string>(),
-                ::testing::AllOf(HasSubstr(fmt::format("points{}", pair["points"].get<int>())),
-                                 HasSubstr(fmt::format("found astube {}", pair["label"].get<std::string>())),
-                                 HasSubstr(fmt::format("recall{:.4f}", pair["recall"].get<double>()))))
+                ::testing::AllOf(HasSubstr(fmt::format("points{}", pair.at("points").get<int>())),
+                                 HasSubstr(fmt::format("found astube {}", pair.at("label").get<std::string>())),
+                                 HasSubstr(fmt::format("recall{:.4f}", pair.at("recall").get<double>()))))
         << seen;
   }
   EXPECT_LT(nlohmann::json::parse(scored.output)["micro_recall"], 1.0);
