@@ -66,11 +66,11 @@ FolderLock::FolderLock(const std::string& folder) {
   require_free(folder, Kind::shared);
 }
 
-FolderLock::FolderLock(const OutputFolder& folder, const Shard& packed_part)
-    : file_(open_file(folder.make_entry(packed_part.name() + ".lock"), kLockFile)) {
+FolderLock::FolderLock(const OutputFolder& folder, const Shard& packed_shard)
+    : file_(open_file(folder.make_entry(packed_shard.name() + ".lock"), kLockFile)) {
   if (const auto other = lock_or_tell(file_, Kind::exclusive))
     throw_io_error("{}: {} is packing shard {}, and two can't; wait for its end", folder.path(), *other,
-                   packed_part.name());
+                   packed_shard.name());
 }
 
 void FolderLock::require_free(const std::string& folder, Kind kind) const {

@@ -29,7 +29,7 @@ class FolderLock {
   /// Of one shard, which two runs can't pack into one tar at once, by a file of its own in `folder`. Throws IoError
   /// where another run holds it (as where a scheduler has lost sight of that run's host: starting again is right) and
   /// where the lock file can't be made.
-  FolderLock(const OutputFolder& folder, const Shard& packed_part);
+  FolderLock(const OutputFolder& folder, const Shard& packed_shard);
 
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;

@@ -43,14 +43,11 @@ Vec3 middle_of(const std::vector<Sample>& samples) {
 
 std::string place_text(const Vec3& p) { return fmt::format("({:.3f}, {:.3f}, {:.3f})", p.x(), p.y(), p.z()); }
 
-}  // namespace
-
 // Direct linear transform (Hartley and Zisserman 2004, "Multiple View Geometry", 7.1): the camera matrix P with pixel ~ P
 // point is the direction in which the equations have the least squares; its null vector is where the camera stands.
-std::optional<Vec3> viewpoint_of_grid(std::span<const cloud::Point> points, std::uint32_t width) {
+std::optional<Vec3> viewpoint_of(const std::vector<Sample>& samples, std::uint32_t width) {
   constexpr std::size_t kFewest = 100;
   constexpr double kWorstPixels = 2.0;
-  const std::vector<Sample> samples = sample_grid(points, width);
   if (samples.size() < kFewest) return std::nullopt;
   const Vec3 middle = middle_of(samples);
   double spread = 0.0;
@@ -87,6 +84,12 @@ std::optional<Vec3> viewpoint_of_grid(std::span<const cloud::Point> points, std:
   return middle - spread * rays.solve(Vec3(camera.col(3)));
 }
 
+}  // namespace
+
+std::optional<Vec3> viewpoint_of_grid(std::span<const cloud::Point> points, std::uint32_t width) {
+  return viewpoint_of(sample_grid(points, width), width);
+}
+
 std::string check_viewpoint(ModelingInput& input) {
   constexpr double kFarOff = 15.0;  // degrees, as the points see it
   // A scanner's view is narrower than a right angle about its axis; of directions all around, the mean is next to nothing.
@@ -95,7 +98,7 @@ std::string check_viewpoint(ModelingInput& input) {
   const std::vector<Sample> samples = sample_grid(input.points, std::max(input.width, 1U));
   if (samples.empty()) return {};
   const Vec3 middle = middle_of(samples);
-  const auto seen = input.width > 0 ? viewpoint_of_grid(input.points, input.width) : std::nullopt;
+  const auto seen = input.width > 0 ? viewpoint_of(samples, input.width) : std::nullopt;
   if (seen) {
     const double off =
         std::acos(std::clamp((told - middle).normalized().dot((*seen - middle).normalized()), -1.0, 1.0));
