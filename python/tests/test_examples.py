@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import pathlib
 import re
+import runpy
 import subprocess
 import sys
+from typing import Any
 
 import pytest
 from conftest import SOURCE
 
 
-def run_example(name: str, folder: pathlib.Path) -> str:
-    script = SOURCE / "examples" / "python" / name
-    return subprocess.run([sys.executable, script], check=True, cwd=folder, stdout=subprocess.PIPE, text=True).stdout
+def run_example(name: str, folder: pathlib.Path, *arguments: str) -> str:
+    command = [sys.executable, str(SOURCE / "examples" / "python" / name), *arguments]
+    return subprocess.run(command, check=True, cwd=folder, stdout=subprocess.PIPE, text=True).stdout
 
 
 def test_generate_and_plot(tmp_path: pathlib.Path) -> None:
@@ -36,6 +38,18 @@ def test_score_your_own(tmp_path: pathlib.Path) -> None:
     assert len(scores) == 3 and all(0.2 < theirs < ours and ours > 0.95 for theirs, ours in scores)
 
 
-def test_view_in_open3d(tmp_path: pathlib.Path) -> None:
+def test_train_on_depth_images_with_torch(tmp_path: pathlib.Path) -> None:
+    pytest.importorskip("torch")
+    text = run_example("4_train_on_depth_images.py", tmp_path, "30")
+    losses = [float(loss) for loss in re.findall(r"cross-entropy (\S+)", text)]
+    assert len(losses) == 3 and losses[2] < 0.8 * losses[0]
+    shares = [float(share) for share in re.findall(r"IoU (\S+)", text)]
+    assert len(shares) == 3 and 0.7 < shares[0] <= 1
+
+
+def test_view_in_open3d(monkeypatch: pytest.MonkeyPatch) -> None:
     open3d = pytest.importorskip("open3d")
-    pytest.skip(f"Open3D {open3d.__version__} needs a window")
+    shown: list[Any] = []
+    monkeypatch.setattr(open3d.visualization, "draw_geometries", shown.extend)  # without its window
+    runpy.run_path(str(SOURCE / "examples" / "python" / "5_view_in_open3d.py"))
+    assert len(shown) == 11 and len(shown[0].points) == len(shown[0].colors) > 10000

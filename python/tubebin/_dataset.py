@@ -4,28 +4,31 @@ from __future__ import annotations
 
 import operator
 import os
-from collections.abc import Iterator, Sequence
-from functools import cached_property
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property, partial
 
 from . import _core
 
 
 class Sample:
-    """One scene of a data set; its files are read when they are asked for."""
+    """One scene with its cloud; those of a data set are read when they are asked for."""
 
-    def __init__(self, files: _core.DatasetFiles, name: str) -> None:
-        self._files = files
+    def __init__(
+        self, name: str, cloud: Callable[[], _core.Cloud], scene: Callable[[], _core.Scene | None]
+    ) -> None:
         self.name = name  #: "A10/007": set A, ten tubes, case 7
+        self._cloud = cloud
+        self._scene = scene
 
     @cached_property
     def cloud(self) -> _core.Cloud:
         """The cloud as it was written, with the ground truth's labels. Raises IoError."""
-        return self._files.read_cloud(self.name)
+        return self._cloud()
 
     @cached_property
     def scene(self) -> _core.Scene | None:
         """What scene.json says; None where there is none. Raises IoError."""
-        return self._files.read_scene(self.name)
+        return self._scene()
 
 
 class Dataset(Sequence[Sample]):
@@ -46,13 +49,16 @@ class Dataset(Sequence[Sample]):
 
     def __getitem__(self, key: int | str) -> Sample:  # type: ignore[override]  # no slices
         if not isinstance(key, str):
-            return Sample(self._files, self.names[operator.index(key)])
+            return self._sample(self.names[operator.index(key)])
         if key not in self._known:
             raise KeyError(f"{self.folder}: has no scene {key}")
-        return Sample(self._files, key)
+        return self._sample(key)
 
     def __iter__(self) -> Iterator[Sample]:
-        return (Sample(self._files, name) for name in self.names)
+        return map(self._sample, self.names)
 
     def __reduce__(self) -> tuple[type[Dataset], tuple[str]]:
         return (type(self), (self.folder,))  # for processes of its own, as a data loader starts them
+
+    def _sample(self, name: str) -> Sample:
+        return Sample(name, partial(self._files.read_cloud, name), partial(self._files.read_scene, name))

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The Python package as a user gets it: the wheel is built, made to carry its libraries, installed into an environment that
-# has numpy alone, and used there. Then python/tests and mypy run on it. Skips (77) where the tools or numpy can't be had.
+# has numpy alone, and used there. Then python/tests and mypy run on it, and what needs PyTorch where Debian's is installed.
+# Skips (77) where the tools or numpy can't be had.
 # Usage: tests/package/python_wheel.sh BUILD_DIR
 set -euo pipefail
 source=$(realpath "$(dirname "$0")/../..")
@@ -43,3 +44,12 @@ cp -r "$source/python/tests" .
 "$work/bare/bin/python" -m mypy -p tubebin
 MYPYPATH=tests "$work/bare/bin/python" -m mypy tests
 TUBEBIN_PROGRAMS=$build/bin TUBEBIN_SOURCE=$source "$work/bare/bin/python" -m pytest --quiet -p no:cacheprovider tests
+
+# PyTorch from the package index comes with gigabytes for graphics cards, Debian's (python3-torch) without, beside Debian's numpy.
+if ! /usr/bin/python3 -c 'import torch' 2> "$work/log"; then
+  echo "without PyTorch, whose tests are left out: $(tail -1 "$work/log")"
+  exit
+fi
+/usr/bin/python3 -m venv --system-site-packages "$work/torch"
+"$work/torch/bin/pip" install --quiet --disable-pip-version-check "$wheel" "$(grep ^pytest== "$source/tests/requirements.txt")"
+TUBEBIN_PROGRAMS=$build/bin TUBEBIN_SOURCE=$source "$work/torch/bin/python" -m pytest --quiet -p no:cacheprovider -k torch tests
