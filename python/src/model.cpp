@@ -90,7 +90,15 @@ void bind_tube(nb::module_& module) {
           "Further paths of a tube that branches, each (N, 3) float64, one end on a path before it.")
       .def_prop_ro("confidence", &Tube::evidence,
                    "Nats: log of how much likelier its points are of a tube than of flat strips (log_odds in "
-                   "model.json); 0 where that was not looked at.");
+                   "model.json); 0 where that was not looked at.")
+      .def_prop_ro(
+          "whole_log_odds", [](const Tube& self) { return self.model.whole_odds; },
+          "Nats: log of how much likelier the best explanation of the scan is than the best one in which its pieces are "
+          "not one tube by themselves; 10: at least. None where that was not looked at.")
+      .def_prop_ro(
+          "bridge_log_odds", [](const Tube& self) { return self.model.paths.front().bridge_odds; },
+          "Nats, of the centreline's bridged cylinders in order: the same against the best explanation in which the "
+          "pieces on both sides are different tubes'. Empty where that was not looked at.");
 }
 
 }  // namespace

@@ -65,6 +65,9 @@ def test_tubes_are_those_of_the_json(dataset: pathlib.Path) -> None:
         assert tube.radius == pytest.approx(expected["radius"], abs=1e-6)
         assert tube.length == pytest.approx(expected["length"], abs=1e-5)
         assert tube.confidence == pytest.approx(expected["log_odds"], abs=0.1, rel=1e-3)
+        assert tube.whole_log_odds == pytest.approx(expected["whole_log_odds"], abs=0.1)
+        bridges = [cylinder["log_odds"] for cylinder in expected["cylinders"] if cylinder["bridged"]]
+        assert tube.bridge_log_odds == pytest.approx(bridges, abs=0.1)
         assert tube.bridged == [cylinder["bridged"] for cylinder in expected["cylinders"]]
         nodes = [c["start"] for c in expected["cylinders"]] + [expected["cylinders"][-1]["end"]]
         np.testing.assert_allclose(tube.centerline, nodes, atol=1e-6)

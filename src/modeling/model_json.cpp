@@ -55,14 +55,12 @@ Json tube_json(const TubeModel& tube, std::size_t label, cloud::Color color, std
   }
   double evidence = 0.0;
   for (const TubePath& path : tube.paths) evidence += path.evidence;
-  return {{"label", label},
-          {"color", fmt::format("#{:06x}", color)},
-          {"length", rounded(tube.length())},
-          {"points", points},
-          {"radius", rounded(tube.radius)},
-          {"log_odds", rounded_nats(evidence)},
-          {"cylinders", cylinders},
-          {"joints", joints}};
+  Json json = {{"label", label},   {"color", fmt::format("#{:06x}", color)}, {"length", rounded(tube.length())},
+               {"points", points}, {"radius", rounded(tube.radius)},         {"log_odds", rounded_nats(evidence)}};
+  if (tube.whole_odds) json["whole_log_odds"] = rounded_nats(*tube.whole_odds);
+  json["cylinders"] = cylinders;
+  json["joints"] = joints;
+  return json;
 }
 
 Json seconds_json(const StageSeconds& seconds) {

@@ -62,9 +62,9 @@ evaluation::Contingency read_contingency(const JsonPlace& root, const std::strin
 }
 
 /// Of a tube, or of a bridge in it: the least counts.
-void add_log_odds(const JsonPlace& part, evaluation::TubeLine& tube) {
-  if (!part.has("log_odds")) return;
-  const double log_odds = part.at("log_odds").number();
+void add_log_odds(const JsonPlace& part, const char* key, evaluation::TubeLine& tube) {
+  if (!part.has(key)) return;
+  const double log_odds = part.at(key).number();
   tube.log_odds = std::min(log_odds, tube.log_odds.value_or(log_odds));
 }
 
@@ -91,11 +91,11 @@ std::vector<evaluation::TubeLine> parse_model_tubes(std::string_view text, const
   for (const JsonPlace& tube : JsonPlace(json, name).at("tubes").elements()) {
     evaluation::TubeLine line;
     if (tube.has("radius")) line.radius = tube.at("radius").number(kRadius);
-    add_log_odds(tube, line);
+    for (const char* key : {"log_odds", "whole_log_odds"}) add_log_odds(tube, key, line);
     for (const JsonPlace& cylinder : tube.at("cylinders").elements()) {
       line.centerline.push_back({cylinder.at("start").vector(kCoordinate), cylinder.at("end").vector(kCoordinate),
                                  cylinder.has("bridged") && cylinder.at("bridged").flag()});
-      add_log_odds(cylinder, line);
+      add_log_odds(cylinder, "log_odds", line);
       length += (line.centerline.back().end - line.centerline.back().start).norm();
     }
     model.push_back(std::move(line));

@@ -129,7 +129,7 @@ TEST(Chains, HaveTheBestCoverAmongThem) {
     std::vector<PathCandidate> paths;
     for (const Chain& chain : chains) paths.push_back(chain.path);
     double cost = 0.0;
-    for (const std::uint32_t c : cheapest_path_cover(kPieces, paths, graph.collisions, 100000)) {
+    for (const std::uint32_t c : cheapest_path_cover(kPieces, paths, graph.collisions, 100000).chosen) {
       cost += paths[c].cost;
       joined += chains[c].path.places.size();
     }

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "modeling/joining/path_cover.hpp"
+#include "modeling/joining/cover_margins.hpp"
 #include "modeling/labeling.hpp"
 #include "tubebin/core/random.hpp"
 #include "tubebin/modeling/filtering.hpp"
@@ -58,25 +58,31 @@ double cheapest_by_trying_all(std::size_t item_count, const std::vector<PathCand
   return cheapest;
 }
 
+/// Each item alone, and paths of two and three at random.
+std::vector<PathCandidate> random_candidates(Random& random, std::uint32_t items) {
+  std::vector<PathCandidate> candidates(items + 8);
+  for (std::uint32_t i = 0; i < items; ++i) {
+    candidates[i].items = {i};
+    candidates[i].cost = random.uniform(0.5, 2.0);
+  }
+  for (std::uint32_t c = items; c < candidates.size(); ++c) {
+    std::set<std::uint32_t> chosen;
+    const int length = random.integer(2, 3);
+    while (static_cast<int>(chosen.size()) < std::min<int>(length, static_cast<int>(items)))
+      chosen.insert(static_cast<std::uint32_t>(random.integer(0, static_cast<int>(items) - 1)));
+    candidates[c].items.assign(chosen.begin(), chosen.end());
+    candidates[c].cost = random.uniform(0.0, 3.0);
+  }
+  return candidates;
+}
+
 TEST(PathCover, IsTheCheapestOfAll) {
   Random random(1);
   for (int trial = 0; trial < 200; ++trial) {
     const std::uint32_t items = static_cast<std::uint32_t>(random.integer(2, 6));
-    std::vector<PathCandidate> candidates(items + 8);
-    for (std::uint32_t i = 0; i < items; ++i) {
-      candidates[i].items = {i};
-      candidates[i].cost = random.uniform(0.5, 2.0);
-    }
-    for (std::uint32_t c = items; c < candidates.size(); ++c) {
-      std::set<std::uint32_t> chosen;
-      const int length = random.integer(2, 3);
-      while (static_cast<int>(chosen.size()) < std::min<int>(length, static_cast<int>(items)))
-        chosen.insert(static_cast<std::uint32_t>(random.integer(0, static_cast<int>(items) - 1)));
-      candidates[c].items.assign(chosen.begin(), chosen.end());
-      candidates[c].cost = random.uniform(0.0, 3.0);
-    }
+    std::vector<PathCandidate> candidates = random_candidates(random, items);
     const Exclusions excluded_by = exclude_at_random(random, candidates, items);
-    const auto cover = cheapest_path_cover(items, candidates, excluded_by, 100000);
+    const auto cover = cheapest_path_cover(items, candidates, excluded_by, 100000).chosen;
     double cost = 0.0;
     std::vector<int> held(items, 0);
     for (const std::uint32_t index : cover) {
@@ -92,8 +98,49 @@ TEST(PathCover, IsTheCheapestOfAll) {
 TEST(PathCover, KeepsApartWhatTakesUpOnePlace) {
   const std::vector<PathCandidate> candidates = {{{0}, 1.0},         {{1}, 1.0},         {{2}, 1.0},   {{3}, 1.0},
                                                  {{0, 1}, 0.1, {0}}, {{2, 3}, 0.2, {1}}, {{1, 2}, 9.0}};
-  const auto cover = cheapest_path_cover(4, candidates, Exclusions{{1}, {0}}, 1000);
+  const auto cover = cheapest_path_cover(4, candidates, Exclusions{{1}, {0}}, 1000).chosen;
   EXPECT_EQ(std::set<std::uint32_t>(cover.begin(), cover.end()), (std::set<std::uint32_t>{2, 3, 4}));
+}
+
+/// The margin to the cheapest cover without the candidates that are ruled out, by trying all.
+template <typename IsRuledOut>
+double margin_by_trying_all(std::size_t items, std::vector<PathCandidate> candidates, const Exclusions& excluded_by,
+                            const IsRuledOut& is_ruled_out) {
+  const double cheapest = cheapest_by_trying_all(items, candidates, excluded_by);
+  std::erase_if(candidates, is_ruled_out);
+  return std::min(cheapest_by_trying_all(items, candidates, excluded_by) - cheapest, CoverMargins::kMost);
+}
+
+TEST(CoverMargins, AreToTheCheapestOtherCover) {
+  Random random(2);
+  std::size_t pairs = 0;
+  for (int trial = 0; trial < 80; ++trial) {
+    const std::uint32_t items = static_cast<std::uint32_t>(random.integer(3, 6));
+    std::vector<PathCandidate> candidates = random_candidates(random, items);
+    const bool has_places = trial % 2 == 0;
+    const Exclusions excluded_by = has_places ? exclude_at_random(random, candidates, items) : Exclusions{};
+    const PathCover cover = cheapest_path_cover(items, candidates, excluded_by, 100000);
+    const CoverMargins margins(cover, candidates, excluded_by);
+    const auto check = [&](double margin, const auto& is_ruled_out) {
+      const double least = margin_by_trying_all(items, candidates, excluded_by, is_ruled_out);
+      EXPECT_GT(margin, least - 1e-9);
+      // Places that become free help no others.
+      EXPECT_LT(margin, has_places ? CoverMargins::kMost + 1e-9 : least + 1e-9);
+    };
+    for (const std::uint32_t c : cover.chosen) {
+      const PathNumbers own = candidates[c].items;
+      const double cost = candidates[c].cost;
+      check(margins.of_path(c), [&](const auto& path) { return path.cost == cost && path.items == own; });
+      if (own.size() < 2) continue;
+      ++pairs;
+      const auto holds = [](const PathCandidate& path, std::uint32_t item) {
+        return std::find(path.items.begin(), path.items.end(), item) != path.items.end();
+      };
+      check(margins.of_pair(own[0], own[1]),
+            [&](const auto& path) { return holds(path, own[0]) && holds(path, own[1]); });
+    }
+  }
+  EXPECT_GT(pairs, 30u);
 }
 
 TEST(Labeling, DistancesMatchSampledSurfaces) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
+#include <numeric>
 
 #include "modeling/lid_scene.hpp"
 
@@ -75,6 +77,59 @@ TEST_F(TubeJoining, EndsThatPassEachOtherAreOneTubes) {
   };
   EXPECT_LT(cost(0.0, 1.2 * kRadius), -5.0);
   EXPECT_GT(cost(2.0 * kRadius, 1.2 * kRadius), 0.0);  // side by side
+}
+
+TEST_F(TubeJoining, AJoinWithoutAnAlternativeIsSure) {
+  const auto joined = join_pieces({straight(0, -0.25, -0.01), straight(0, 0.01, 0.25)}, occlusion(), 0.0).paths;
+  ASSERT_EQ(joined.size(), 1u);
+  ASSERT_EQ(joined[0].bridge_odds.size(), 1u);
+  EXPECT_GT(joined[0].bridge_odds[0], 5.0);
+  EXPECT_EQ(joined[0].whole_odds, joined[0].bridge_odds[0]);  // to be taken apart is all that it could be
+}
+
+/// Three tubes, nearly in one place, that bend by anything out of sight where they cross: each in two pieces, tube k's are 2 k and
+/// 2 k + 1.
+std::vector<TubePiece> crossing_tubes(Random& random) {
+  std::vector<TubePiece> pieces;
+  for (int tube = 0; tube < 3; ++tube) {
+    const Vec3 middle(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), -0.015 * tube);
+    double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+    for (int half = 0; half < 2; ++half) {
+      const Vec3 outward(std::cos(angle), std::sin(angle), 0.0);
+      TubePiece& piece =
+          pieces.emplace_back(TubePiece{.nodes = {middle + 0.03 * outward}, .radius = kRadius, .points = {}});
+      for (int node = 0; node < 4; ++node) {
+        piece.nodes.push_back(piece.nodes.back() + 0.05 * Vec3(std::cos(angle), std::sin(angle), 0.0));
+        angle += 0.3 * random.normal();
+      }
+      angle = std::atan2(-outward.y(), -outward.x()) + 1.2 * random.normal();
+    }
+  }
+  return pieces;
+}
+
+TEST_F(TubeJoining, WrongJoinsAreLessSureThanRightOnes) {
+  Random random(7);
+  const OcclusionTest scan = occlusion();
+  std::vector<double> right, wrong;
+  for (int trial = 0; trial < 100; ++trial) {
+    const std::vector<TubePiece> pieces = crossing_tubes(random);
+    const auto tube_of = [&](const Vec3& node) {
+      return std::ranges::min_element(pieces, {}, [&](const auto& p) { return distance_to_polyline(node, p.nodes); }) -
+             pieces.begin();
+    };
+    for (const TubePath& path : join_pieces(pieces, scan, 0.0).paths)
+      for (std::size_t k = 0, bridge = 0; k < path.bridged.size(); ++k)
+        if (path.bridged[k])
+          (tube_of(path.nodes[k]) / 2 == tube_of(path.nodes[k + 1]) / 2 ? right : wrong)
+              .push_back(path.bridge_odds.at(bridge++));
+  }
+  const auto mean = [](const std::vector<double>& odds) {
+    return std::accumulate(odds.begin(), odds.end(), 0.0) / static_cast<double>(odds.size());
+  };
+  ASSERT_GT(wrong.size(), 10u);
+  EXPECT_GT(right.size(), wrong.size());
+  EXPECT_GT(mean(right), 2.0 * mean(wrong));
 }
 
 TEST(Occlusion, SeesTubesThatHangOverTheWall) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "tubebin/cloud/cloud.hpp"
@@ -25,16 +26,20 @@ struct TubePiece {
 struct TubePath {
   std::vector<Vec3> nodes;    ///< cylinder i reaches from nodes[i] to nodes[i + 1]; metres, world frame
   std::vector<bool> bridged;  ///< of cylinder i: it spans a stretch without points, from one piece to the next
-  std::vector<double> bridge_odds =
-      {};                 ///< nats, of the bridges in order: log of how much likelier the scan is with it
+  /// nats, of the bridges in order: log of how much likelier the best explanation of the scan is than the best one in
+  /// which the pieces on both sides are different tubes'; 10 at most. None where this was not looked at.
+  std::vector<double> bridge_odds = {};
+  /// nats: the same against the best one in which its pieces are not one tube by themselves.
+  std::optional<double> whole_odds = {};
   double evidence = 0.0;  ///< nats: log of how much likelier its points are of a tube than of flat strips
 };
 
 /// A tube: one path, or, where it branches, a tree of them. A branch starts on the centreline of a path before it, or
 /// ends there.
 struct TubeModel {
-  std::vector<TubePath> paths;  ///< longest first
-  double radius = 0.0;          ///< metres
+  std::vector<TubePath> paths;            ///< longest first
+  double radius = 0.0;                    ///< metres
+  std::optional<double> whole_odds = {};  ///< nats: as TubePath::whole_odds, of all paths together
 
   double length() const;
   std::size_t cylinder_count() const;

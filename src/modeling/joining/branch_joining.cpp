@@ -8,7 +8,7 @@
 
 #include "modeling/fitting/vote_voxels.hpp"
 #include "modeling/joining/branch_links.hpp"
-#include "modeling/joining/path_cover.hpp"
+#include "modeling/joining/cover_margins.hpp"
 #include "tubebin/core/random.hpp"
 
 namespace tubebin::modeling {
@@ -28,8 +28,10 @@ struct Tree {
   std::vector<std::uint32_t> used_ends = {};
   std::uint64_t key = 0;  ///< the paths' keys, xor: the same for the same paths in any order (Zobrist 1970)
   double link_cost = 0.0;
-  double cost = 0.0;    ///< with what its length says
-  double length = 0.0;  ///< of paths and links, metres
+  double cost = 0.0;                      ///< with what its length says
+  double length = 0.0;                    ///< of paths and links, metres
+  std::optional<double> whole_odds = {};  ///< as TubeModel has them
+  std::vector<double> link_odds = {};     ///< of the links, as TubePath::bridge_odds
 
   bool holds(std::uint32_t path) const { return std::find(paths.begin(), paths.end(), path) != paths.end(); }
   bool uses(std::uint32_t end) const { return std::find(used_ends.begin(), used_ends.end(), end) != used_ends.end(); }
@@ -67,6 +69,8 @@ class TreeJoiner {
       a->length += b->length;
       trees.erase(b);
     }
+    for (Tree& tree : trees)
+      for (const std::uint32_t l : tree.links) tree.link_odds.push_back(std::min(-links_[l].cost, CoverMargins::kMost));
     return trees;
   }
 
@@ -114,18 +118,27 @@ class TreeJoiner {
       candidate.items.assign(tree.paths.begin(), tree.paths.end());
       candidate.cost = tree.cost;
     }
+    const PathCover cover = cheapest_path_cover(singles_.size(), candidates, {}, kSearchNodeLimit);
+    const CoverMargins margins(cover, candidates, {});
     std::vector<Tree> chosen;
-    for (const std::uint32_t c : cheapest_path_cover(singles_.size(), candidates, {}, kSearchNodeLimit))
-      chosen.push_back(trees_[c]);
+    for (const std::uint32_t c : cover.chosen) {
+      Tree& tree = chosen.emplace_back(trees_[c]);
+      tree.whole_odds = margins.of_path(c);
+      for (const std::uint32_t l : tree.links)
+        tree.link_odds.push_back(margins.of_pair(links_[l].end / 2, links_[l].other));
+    }
     return chosen;
   }
 
   TubeModel tube_of(const Tree& tree, const std::vector<TubePath>& paths) const {
-    TubeModel tube{.paths = {}, .radius = radius_};
+    TubeModel tube{.paths = {}, .radius = radius_, .whole_odds = tree.whole_odds};
     for (const std::uint32_t p : tree.paths) {
       tube.paths.push_back(paths[p]);
-      for (const std::uint32_t l : tree.links)
-        if (links_[l].end / 2 == p) lead_up(tube.paths.back(), links_[l]);
+      if (tube.whole_odds)
+        tube.whole_odds = std::min(*tube.whole_odds, paths[p].whole_odds.value_or(CoverMargins::kMost));
+      for (std::size_t k = 0; k < tree.links.size(); ++k)
+        if (const BranchLink& link = links_[tree.links[k]]; link.end / 2 == p)
+          lead_up(tube.paths.back(), link, tree.link_odds[k]);
     }
     std::sort(tube.paths.begin(), tube.paths.end(),
               [](const TubePath& a, const TubePath& b) { return polyline_length(a.nodes) > polyline_length(b.nodes); });
@@ -133,10 +146,11 @@ class TreeJoiner {
   }
 
  private:
-  static void lead_up(TubePath& path, const BranchLink& link) {
+  static void lead_up(TubePath& path, const BranchLink& link, double odds) {
     const bool last = link.end % 2 == 1;
     path.nodes.insert(last ? path.nodes.end() : path.nodes.begin(), link.place);
     path.bridged.insert(last ? path.bridged.end() : path.bridged.begin(), true);
+    path.bridge_odds.insert(last ? path.bridge_odds.end() : path.bridge_odds.begin(), odds);
   }
 
   void add_link(Tree& tree, std::uint32_t l) const {
@@ -232,7 +246,10 @@ std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double 
 
 std::vector<TubeModel> unbranched(std::vector<TubePath> paths, double radius) {
   std::vector<TubeModel> tubes;
-  for (TubePath& path : paths) tubes.push_back({.paths = {std::move(path)}, .radius = radius});
+  for (TubePath& path : paths) {
+    const std::optional<double> whole_odds = path.whole_odds;
+    tubes.push_back({.paths = {std::move(path)}, .radius = radius, .whole_odds = whole_odds});
+  }
   return tubes;
 }
 

@@ -171,7 +171,6 @@ TubePath path_of(const Chain& chain, const PieceGraph& graph) {
     }
     if (k == chain.path.places.size()) break;
     const JoinCandidate& join = graph.joins[chain.path.places[k]];
-    path.bridge_odds.push_back(-join.cost);
     entered = join.end_a / 2 == chain.pieces[k + 1] ? join.end_a : join.end_b;
   }
   return path;

@@ -40,6 +40,8 @@ class ComponentSolver {
     return best_;
   }
 
+  double price(std::uint32_t item) const { return price_[item]; }
+
  private:
   double reduced_cost(std::uint32_t c) const { return reduced_cost(c, price_); }
   double reduced_cost(std::uint32_t c, const std::vector<double>& prices) const {
@@ -191,9 +193,8 @@ class ComponentSolver {
 
 }  // namespace
 
-std::vector<std::uint32_t> cheapest_path_cover(std::size_t item_count, std::span<const PathCandidate> candidates,
-                                               std::span<const std::vector<std::uint32_t>> excluded_by,
-                                               std::size_t node_limit) {
+PathCover cheapest_path_cover(std::size_t item_count, std::span<const PathCandidate> candidates,
+                              std::span<const std::vector<std::uint32_t>> excluded_by, std::size_t node_limit) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
   for (const PathCandidate& candidate : candidates)
     for (const std::uint32_t item : candidate.items) links.emplace_back(candidate.items.front(), item);
@@ -207,12 +208,14 @@ std::vector<std::uint32_t> cheapest_path_cover(std::size_t item_count, std::span
   for (std::uint32_t c = 0; c < candidates.size(); ++c)
     open[component_of_item[candidates[c].items.front()]].push_back(c);
 
-  std::vector<std::uint32_t> cover;
+  PathCover cover{.chosen = {}, .prices = std::vector<double>(item_count, 0.0)};
   for (std::size_t k = 0; k < items.size(); ++k) {
-    const auto chosen = ComponentSolver(candidates, items[k], open[k], item_count, excluded_by, node_limit).solve();
-    cover.insert(cover.end(), chosen.begin(), chosen.end());
+    ComponentSolver solver(candidates, items[k], open[k], item_count, excluded_by, node_limit);
+    const auto chosen = solver.solve();
+    cover.chosen.insert(cover.chosen.end(), chosen.begin(), chosen.end());
+    for (const std::uint32_t i : items[k]) cover.prices[i] = solver.price(i);
   }
-  std::sort(cover.begin(), cover.end());
+  std::sort(cover.chosen.begin(), cover.chosen.end());
   return cover;
 }
 

@@ -5,6 +5,7 @@
 
 #include "modeling/joining/branch_links.hpp"
 #include "modeling/joining/chains.hpp"
+#include "modeling/joining/cover_margins.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -64,15 +65,17 @@ struct Cover {
   PieceGraph graph;
   LengthModel lengths;
   std::vector<Chain> chains;
+  std::vector<PathCandidate> paths;  ///< that it was chosen from
+  PathCover choice;                  ///< of the paths, in the chains' order
 };
 
 Cover cheapest_cover(PieceGraph graph, const LengthModel& lengths) {
   std::vector<Chain> chains = find_chains(graph, lengths), chosen;
   std::vector<PathCandidate> paths;
   for (const Chain& chain : chains) paths.push_back(chain.path);
-  for (const std::uint32_t c : cheapest_path_cover(graph.pieces.size(), paths, graph.collisions, kNodeLimit))
-    chosen.push_back(std::move(chains[c]));
-  return {std::move(graph), lengths, std::move(chosen)};
+  PathCover choice = cheapest_path_cover(graph.pieces.size(), paths, graph.collisions, kNodeLimit);
+  for (const std::uint32_t c : choice.chosen) chosen.push_back(std::move(chains[c]));
+  return {std::move(graph), lengths, std::move(chosen), std::move(paths), std::move(choice)};
 }
 
 /// What speaks against the cover, nats.
@@ -119,10 +122,16 @@ Cover with_common_length(Cover best, const JoinSearch& search) {
 }
 
 std::vector<TubePath> paths_of(const Cover& cover) {
+  const CoverMargins margins(cover.choice, cover.paths, cover.graph.collisions);
   std::vector<TubePath> paths;
-  for (const Chain& chain : cover.chains) {
+  for (std::size_t k = 0; k < cover.chains.size(); ++k) {
+    const Chain& chain = cover.chains[k];
     const bool is_branch = cover.graph.ends[chain.first_end].is_on_side || cover.graph.ends[chain.last_end].is_on_side;
-    if (chain.length >= (is_branch ? 1.0 : 2.0) * cover.lengths.radius) paths.push_back(path_of(chain, cover.graph));
+    if (chain.length < (is_branch ? 1.0 : 2.0) * cover.lengths.radius) continue;
+    TubePath& path = paths.emplace_back(path_of(chain, cover.graph));
+    for (std::size_t n = 0; n + 1 < chain.pieces.size(); ++n)
+      path.bridge_odds.push_back(margins.of_pair(chain.pieces[n], chain.pieces[n + 1]));
+    path.whole_odds = margins.of_path(cover.choice.chosen[k]);
   }
   return paths;
 }
