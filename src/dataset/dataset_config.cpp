@@ -117,6 +117,8 @@ void describe(Fields& fields, DatasetConfig& config) {
                  [&](Fields& inner) { describe(inner, config.tube); });
   fields.group("bin", "the bin, an open box where its walls are not said to be otherwise",
                [&](Fields& inner) { describe(inner, config.bin); });
+  fields.group("surroundings", "what stands around the bin, drawn for each pile; none by default",
+               [&](Fields& inner) { describe(inner, config.surroundings); });
   fields.group("physics", "the drop and the checks of its result",
                [&](Fields& inner) { describe(inner, config.physics); });
   fields.group("sequence", "emptying the bin: tubes are lifted out one by one", [&](Fields& inner) {
@@ -158,6 +160,7 @@ void check_of_any_version(const DatasetConfig& config, const KeyPlaces& places) 
   if (config.kinds.empty()) check(config.tube, places, "tube");
   check(config.kinds, config.tubes, places);
   check(config.bin, places, "bin");
+  check(config.surroundings, config.bin, places, "surroundings");
   check(config.physics, places, "physics");
   if (config.scanners.empty()) check_scanner(config.scanner, config.bin, places, "scanner");
   for (std::size_t i = 0; i < config.scanners.size(); ++i)

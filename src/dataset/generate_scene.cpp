@@ -49,7 +49,8 @@ GeneratedScene show_pile(const DatasetConfig& config, const SceneId& id, const P
   const scene::Scene scene{.bin = config.bin,
                            .scanner = scanners.front(),
                            .tubes = pile.tubes,
-                           .further_scanners = {scanners.begin() + 1, scanners.end()}};
+                           .further_scanners = {scanners.begin() + 1, scanners.end()},
+                           .surroundings = pile.surroundings};
   scan::MergedScan scanned = scan::scan_from_all(scene, pile.seed);
   clock.end_stage("scan");
   if (!has_point(scanned.cloud)) {

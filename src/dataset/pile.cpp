@@ -27,6 +27,7 @@ std::size_t choose_tube(const std::vector<scene::PlacedTube>& tubes, LiftRule ru
 Pile to_pile(physics::DropResult result, std::uint64_t seed) {
   return {.seed = seed,
           .tubes = std::move(result.tubes),
+          .surroundings = {},
           .contacts = std::move(result.contacts),
           .physics = result.figures,
           .lift = std::nullopt,
@@ -40,6 +41,11 @@ Piles failed_piles(const physics::DropResult& result, const std::string& where) 
           .piles = {}};
 }
 
+/// Nothing of what stands around is part of the simulation, so no tube may be where it stands.
+Piles crowded_piles(const physics::DropFigures& figures, const std::string& detail) {
+  return {.failure = "crowded", .failure_detail = detail, .physics = figures, .piles = {}};
+}
+
 scene::Lift to_lift(const Pile& before, std::size_t lifted, const physics::LiftResult& result) {
   scene::Lift lift{.lifted = static_cast<std::uint32_t>(lifted + 1), .force = result.force, .dragged = {}, .moved = {}};
   for (const std::size_t i : result.dragged) lift.dragged.push_back(static_cast<std::uint32_t>(i + 1));
@@ -48,6 +54,13 @@ scene::Lift to_lift(const Pile& before, std::size_t lifted, const physics::LiftR
 }
 
 }  // namespace
+
+scene::PlacedSurroundings draw_surroundings(const DatasetConfig& config, std::uint64_t seed,
+                                            const std::vector<scene::PlacedTube>& tubes) {
+  constexpr std::uint64_t kStream = 0x7375'7272'6F75'6E64;
+  Random random(derive_seed({seed, kStream}));
+  return scene::place_surroundings(config.surroundings, config.bin, tubes, config.all_scanners(), random);
+}
 
 Piles make_piles(const DatasetConfig& config, const SceneId& id, int attempt, int lifts) {
   Piles result;
@@ -65,6 +78,9 @@ Piles make_piles(const DatasetConfig& config, const SceneId& id, int attempt, in
   result.physics = drop.figures;
   result.piles.push_back(to_pile(std::move(drop), seed));
   result.piles.back().seconds = seconds;
+  const scene::PlacedSurroundings around = draw_surroundings(config, seed, result.piles.back().tubes);
+  if (!around.problem.empty()) return crowded_piles(result.physics, around.problem);
+  result.piles.back().surroundings = around.surroundings;
 
   for (int step = 1; step <= lifts; ++step) {
     const Pile& before = result.piles.back();
@@ -76,9 +92,14 @@ Piles make_piles(const DatasetConfig& config, const SceneId& id, int attempt, in
     if (lift.rest.failure != physics::DropFailure::none)
       return failed_piles(lift.rest, fmt::format("after lift {}: ", step));
     const scene::Lift record = to_lift(before, lifted, lift);
+    if (around.surroundings) {
+      const std::string touching = scene::find_touching_tube(*around.surroundings, config.bin, lift.rest.tubes);
+      if (!touching.empty()) return crowded_piles(lift.rest.figures, fmt::format("after lift {}: {}", step, touching));
+    }
     seconds.clear();
     clock.end_stage("lift");
     result.piles.push_back(to_pile(std::move(lift.rest), step_seed));
+    result.piles.back().surroundings = around.surroundings;
     result.piles.back().lift = record;
     result.piles.back().seconds = seconds;
   }

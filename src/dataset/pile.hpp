@@ -8,6 +8,7 @@ namespace tubebin::dataset {
 struct Pile {
   std::uint64_t seed = 0;  ///< of the scene that shows it
   std::vector<scene::PlacedTube> tubes;
+  std::optional<scene::Surroundings> surroundings;
   std::vector<scene::Contact> contacts;
   physics::DropFigures physics;
   std::optional<scene::Lift> lift;  ///< that left it
@@ -23,6 +24,11 @@ struct Piles {
 };
 
 Piles make_piles(const DatasetConfig& config, const SceneId& id, int attempt, int lifts);
+
+/// Around the tubes of a pile that nothing was lifted from; `seed` is the scene's. The stream is its own, so that it changes
+/// nothing about the pile.
+scene::PlacedSurroundings draw_surroundings(const DatasetConfig& config, std::uint64_t seed,
+                                            const std::vector<scene::PlacedTube>& tubes);
 
 /// Scans a pile, and tells how it lies.
 GeneratedScene show_pile(const DatasetConfig& config, const SceneId& id, const Pile& pile);

@@ -36,6 +36,16 @@ BodySurface::BodySurface(const scene::PlacedTube& placed) {
       spheres_.push_back({placed.node_in_world(static_cast<int>(node)), radii[node], bore_radius(radii[node])});
 }
 
+BodySurface::BodySurface(const scene::Scene& scene) {
+  for (const auto& parts : {scene::bin_parts(scene.bin), scene::surrounding_boxes(scene)})
+    for (const scene::BinPart& part : parts) boxes_.push_back({part.box, part.world_from_part.inverse()});
+  for (const scene::StandingCylinder& cylinder : scene::surrounding_cylinders(scene))
+    cylinders_.push_back({.center = cylinder.position + cylinder.height / 2.0 * Vec3::UnitZ(),
+                          .axis = Vec3::UnitZ(),
+                          .half_length = cylinder.height / 2.0,
+                          .radius = cylinder.radius});
+}
+
 double BodySurface::distance(const Vec3& point) const {
   double nearest = std::numeric_limits<double>::infinity();
   for (const CappedCylinder& cylinder : cylinders_) {
@@ -53,8 +63,8 @@ double BodySurface::distance(const Vec3& point) const {
     nearest = std::min(nearest, std::abs(from_center - sphere.radius));
     if (sphere.bore_radius > 0.0) nearest = std::min(nearest, std::abs(from_center - sphere.bore_radius));
   }
-  for (const auto& [box, world_from_part, is_turned] : parts_) {
-    const Vec3 p = world_from_part.inverse() * point;
+  for (const auto& [box, box_from_world] : boxes_) {
+    const Vec3 p = box_from_world * point;
     nearest = std::min(nearest, distance_from_bounds(Vec3((p - box.center()).cwiseAbs() - box.sizes() / 2.0)));
   }
   return nearest;

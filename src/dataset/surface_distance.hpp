@@ -8,11 +8,12 @@
 
 namespace tubebin::dataset {
 
-/// The surfaces of one body: a tube's cylinders and joint spheres, outside and in its bore, or the bin's parts.
+/// The surfaces of one body: a tube's cylinders and joint spheres, outside and in its bore; or what has label 0, the bin's
+/// parts and those of what stands around it.
 class BodySurface {
  public:
   explicit BodySurface(const scene::PlacedTube& tube);
-  explicit BodySurface(const scene::Bin& bin) : parts_(scene::bin_parts(bin)) {}
+  explicit BodySurface(const scene::Scene& scene);
 
   /// Metres to the nearest of the body's surfaces, from whichever side.
   double distance(const Vec3& point) const;
@@ -32,7 +33,11 @@ class BodySurface {
   };
   std::vector<CappedCylinder> cylinders_;
   std::vector<Sphere> spheres_;
-  std::vector<scene::BinPart> parts_;
+  struct PosedBox {
+    scene::Box box;
+    Pose box_from_world;
+  };
+  std::vector<PosedBox> boxes_;
 };
 
 }  // namespace tubebin::dataset

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "dataset/pile.hpp"
 #include "dataset/surface_distance.hpp"
 #include "tubebin/core/file_record.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
@@ -56,6 +57,12 @@ void check_kinds(const scene::SceneRecord& scene, const DatasetConfig& config, P
         fmt::format("scene.json has {} tubes of kind '{}', which config.yaml does not have", count, name));
 }
 
+/// Of a pile that nothing was lifted from, whose seed draws it anew.
+void check_surroundings(const scene::SceneRecord& scene, const DatasetConfig& config, Problems& problems) {
+  if (!scene.lift && scene.scene.surroundings != draw_surroundings(config, scene.seed, scene.scene.tubes).surroundings)
+    problems.push_back("scene.json has other surroundings than config.yaml and the seed give");
+}
+
 void check_colors(const scene::SceneRecord& scene, Problems& problems) {
   const std::set<cloud::Color> different(scene.colors.begin(), scene.colors.end());
   if (scene.colors.size() != scene.scene.tubes.size() + 1 || different.size() != scene.colors.size() ||
@@ -76,7 +83,7 @@ void check_tubes_txt(const std::vector<scene::PlacedTube>& read, const scene::Sc
 }
 
 std::vector<BodySurface> surfaces_of(const scene::Scene& scene) {
-  std::vector<BodySurface> surfaces = {BodySurface(scene.bin)};
+  std::vector<BodySurface> surfaces = {BodySurface(scene)};
   for (const scene::PlacedTube& tube : scene.tubes) surfaces.emplace_back(tube);
   return surfaces;
 }
@@ -174,6 +181,7 @@ void check_clean_cloud(const cloud::Cloud& clean, const scene::SceneRecord& scen
 void check_contacts(const scene::SceneRecord& scene, const DatasetConfig& config, Problems& problems) {
   scene::Scene solid = scene.scene;  // bores are filled where tubes collide
   for (scene::PlacedTube& tube : solid.tubes) tube.tube.wall_thickness = 0.0;
+  solid.surroundings.reset();  // no part of the simulation
   const std::vector<BodySurface> surfaces = surfaces_of(solid);
   for (const scene::Contact& contact : scene.contacts) {
     const auto off = [&](cloud::Label label) {
@@ -215,6 +223,8 @@ void check_lift(const scene::DatasetFiles& files, const scene::SceneRecord& scen
   if (scene.lift->lifted > before.scene.tubes.size())
     return problems.push_back(fmt::format("tube {} was lifted, of {}", scene.lift->lifted, before.scene.tubes.size()));
   const std::vector<scene::PlacedTube> left = scene::without(before.scene.tubes, scene.lift->lifted);
+  if (scene.scene.surroundings != before.scene.surroundings)
+    problems.push_back(fmt::format("what stands around the bin is not what {} has there", id.name()));
   const bool same = std::ranges::equal(left, scene.scene.tubes, [](const auto& a, const auto& b) {
     return a.tube.nodes == b.tube.nodes && a.tube.cylinders == b.tube.cylinders && a.tube.radius == b.tube.radius;
   });
@@ -240,6 +250,7 @@ void check_content(const scene::DatasetFiles& files, const DatasetConfig& config
   const scene::SceneRecord scene = parse(scene::parse_scene_json, "scene.json");
   check_identity(scene, config, id, record, problems);
   check_kinds(scene, config, problems);
+  check_surroundings(scene, config, problems);
   check_colors(scene, problems);
   check_tubes_txt(parse(scene::parse_tubes_txt, "tubes.txt"), scene, problems);
   check_contacts(scene, config, problems);

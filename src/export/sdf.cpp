@@ -90,6 +90,7 @@ class WorldWriter {
         write_physics();
         write_look();
         write_bin();
+        if (scene_.surroundings) write_surroundings();
         for (std::size_t k = 0; k < scene_.tubes.size(); ++k) write_tube(k);
       });
     });
@@ -167,12 +168,40 @@ class WorldWriter {
       out_.text("static", "1");
       for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::string name = i < std::size(kNames) ? kNames[i] : fmt::format("part_{}", i + 1);
-        const Pose pose = parts[i].world_from_part * at(parts[i].box.center());
+        write_box(name, parts[i]);
+      }
+    });
+  }
+
+  void write_surroundings() {
+    const std::vector<scene::BinPart> boxes = scene::surrounding_boxes(scene_);
+    const std::vector<scene::StandingCylinder> cylinders = scene::surrounding_cylinders(scene_);
+    out_.element("model", named("surroundings"), [&] {
+      out_.text("static", "1");
+      for (std::size_t i = 0; i < boxes.size(); ++i) write_box(i == 0 ? "table" : fmt::format("box_{}", i), boxes[i]);
+      for (std::size_t i = 0; i < cylinders.size(); ++i) {
+        const std::string name = fmt::format("cylinder_{}", i + 1);
+        const scene::StandingCylinder& cylinder = cylinders[i];
         out_.element("link", named(name), [&] {
-          write_solid(name, pose, physics_.friction_bin, &colors_[0],
-                      [&] { out_.element("box", [&] { out_.text("size", triple(parts[i].box.sizes())); }); });
+          write_solid(name, at(cylinder.position + cylinder.height / 2.0 * Vec3::UnitZ()), physics_.friction_bin,
+                      &colors_[0], [&] { write_cylinder_shape(cylinder.radius, cylinder.height); });
         });
       }
+    });
+  }
+
+  void write_box(const std::string& name, const scene::BinPart& part) {
+    const Pose pose = part.world_from_part * at(part.box.center());
+    out_.element("link", named(name), [&] {
+      write_solid(name, pose, physics_.friction_bin, &colors_[0],
+                  [&] { out_.element("box", [&] { out_.text("size", triple(part.box.sizes())); }); });
+    });
+  }
+
+  void write_cylinder_shape(double radius, double length) {
+    out_.element("cylinder", [&] {
+      out_.number("radius", radius);
+      out_.number("length", length);
     });
   }
 
@@ -212,12 +241,8 @@ class WorldWriter {
   void write_cylinder(const tube::SolidCylinder& cylinder, std::size_t number, const cloud::Color* color) {
     const Vec3 axis = cylinder.b - cylinder.a;
     const Pose pose = make_pose(Quat::FromTwoVectors(Vec3::UnitZ(), axis), 0.5 * (cylinder.a + cylinder.b));
-    write_solid(fmt::format("cylinder-{}", number), pose, physics_.friction_tube, color, [&] {
-      out_.element("cylinder", [&] {
-        out_.number("radius", cylinder.radius);
-        out_.number("length", axis.norm());
-      });
-    });
+    write_solid(fmt::format("cylinder-{}", number), pose, physics_.friction_tube, color,
+                [&] { write_cylinder_shape(cylinder.radius, axis.norm()); });
   }
 
   void write_joint(const tube::JointSphere& joint, const cloud::Color* color) {

@@ -20,12 +20,15 @@ struct Nearest {
 
 }  // namespace
 
-SurfaceNormals::SurfaceNormals(const scene::Scene& scene) : bin_(scene::bin_parts(scene.bin)) {
+SurfaceNormals::SurfaceNormals(const scene::Scene& scene)
+    : boxes_(scene::bin_parts(scene.bin)), cylinders_(scene::surrounding_cylinders(scene)) {
+  const std::vector<scene::BinPart> around = scene::surrounding_boxes(scene);
+  boxes_.insert(boxes_.end(), around.begin(), around.end());
   for (const scene::PlacedTube& tube : scene.tubes) tubes_.push_back(tube.solids_in_world());
 }
 
 Vec3 SurfaceNormals::at(cloud::Label label, const Vec3& point) const {
-  return label == 0 ? at_bin(point) : at_tube(tubes_.at(label - 1), point);
+  return label == 0 ? at_background(point) : at_tube(tubes_.at(label - 1), point);
 }
 
 Vec3 SurfaceNormals::at_tube(const tube::TubeSolids& tube, const Vec3& point) const {
@@ -54,9 +57,9 @@ Vec3 SurfaceNormals::at_tube(const tube::TubeSolids& tube, const Vec3& point) co
 
 /// Of the part that is nearest, the face that the point is farthest beyond. Where it is level with several parts, as the
 /// floor at a wall's foot, the first.
-Vec3 SurfaceNormals::at_bin(const Vec3& point) const {
+Vec3 SurfaceNormals::at_background(const Vec3& point) const {
   Nearest nearest;
-  for (const auto& [box, world_from_part, is_turned] : bin_) {
+  for (const auto& [box, world_from_part, is_turned] : boxes_) {
     const Vec3 from_center = world_from_part.inverse() * point - box.center();
     const Vec3 beyond = from_center.cwiseAbs() - box.sizes() / 2.0;
     Eigen::Index axis = 0;
@@ -64,6 +67,13 @@ Vec3 SurfaceNormals::at_bin(const Vec3& point) const {
     const double outside = beyond.cwiseMax(0.0).norm();
     nearest.offer(outside > 0.0 ? outside : farthest,
                   world_from_part.linear() * Vec3(Vec3::Unit(axis) * (from_center[axis] < 0.0 ? -1.0 : 1.0)));
+  }
+  for (const scene::StandingCylinder& cylinder : cylinders_) {
+    const Vec3 from_foot = point - cylinder.position;
+    const double across = from_foot.head<2>().norm();
+    if (across <= cylinder.radius) nearest.offer(from_foot.z() - cylinder.height, Vec3::UnitZ());
+    if (from_foot.z() >= 0.0 && from_foot.z() <= cylinder.height && across > 0.0)
+      nearest.offer(across - cylinder.radius, Vec3(from_foot.x(), from_foot.y(), 0.0) / across);
   }
   return nearest.normal;
 }

@@ -17,9 +17,10 @@ class SurfaceNormals {
 
  private:
   Vec3 at_tube(const tube::TubeSolids& tube, const Vec3& point) const;
-  Vec3 at_bin(const Vec3& point) const;
+  Vec3 at_background(const Vec3& point) const;
 
-  std::vector<scene::BinPart> bin_;
+  std::vector<scene::BinPart> boxes_;  ///< of the bin and of what stands around it
+  std::vector<scene::StandingCylinder> cylinders_;
   std::vector<tube::TubeSolids> tubes_;
 };
 

@@ -226,6 +226,15 @@ Mesh tube_mesh(const scene::PlacedTube& placed, const Vec3& origin, const Finene
   return mesh;
 }
 
+Mesh surroundings_mesh(const scene::Scene& scene, const Vec3& origin, const Fineness& fineness) {
+  Mesh mesh;
+  MeshBuilder builder(mesh, origin, fineness);
+  for (const scene::BinPart& part : scene::surrounding_boxes(scene)) add_part(part, origin, fineness, mesh);
+  for (const scene::StandingCylinder& cylinder : scene::surrounding_cylinders(scene))
+    builder.add_cylinder(cylinder.position, cylinder.position + cylinder.height * Vec3::UnitZ(), cylinder.radius);
+  return mesh;
+}
+
 void add_part(const scene::BinPart& part, const Vec3& origin, const Fineness& fineness, Mesh& mesh) {
   MeshBuilder builder(mesh, origin, fineness);
   for (int axis = 0; axis < 3; ++axis)

@@ -31,6 +31,9 @@ struct Fineness {
 /// Cylinders with flat caps and spheres at the joints, around `origin` in world axes. A hollow tube's free ends are open.
 Mesh tube_mesh(const scene::PlacedTube& tube, const Vec3& origin, const Fineness& fineness);
 
+/// What stands around the bin, around `origin` in world axes.
+Mesh surroundings_mesh(const scene::Scene& scene, const Vec3& origin, const Fineness& fineness);
+
 /// The faces of a bin's part, around `origin` in world axes.
 void add_part(const scene::BinPart& part, const Vec3& origin, const Fineness& fineness, Mesh& mesh);
 

@@ -1,34 +1,34 @@
 #include "scan/bin_front.hpp"
 
 #include "scan/solid_outline.hpp"
-#include "scan/view_window.hpp"
 
 namespace tubebin::scan {
 
-namespace {
-
-scene::Box bounds_of(const SolidBox& box) {
-  scene::Box bounds;
-  for (const Vec3& corner : box.corners()) bounds.extend(corner);
-  return bounds;
-}
-
-}  // namespace
-
 BinFront::BinFront(const scene::Scene& scene, const scene::Camera& camera)
     : camera_(camera), depth_min_(scene.scanner.range_min - kDepthTolerance) {
-  for (const SolidBox& box : scene_solids({scene.bin, scene.scanner, {}}).bin)
-    boxes_.push_back({box, view_window({{}, {}, {box}}, SeenBodies::bin_and_tubes, camera, scene.scanner.range_min),
-                      scan::nearest_depth(bounds_of(box), camera)});
+  const SceneSolids solids = scene_solids({.bin = scene.bin,
+                                           .scanner = scene.scanner,
+                                           .tubes = {},
+                                           .further_scanners = {},
+                                           .surroundings = scene.surroundings});
+  const auto add = [&](const auto& solid, const auto& outline) {
+    parts_.push_back({solid, outline.window(), scan::nearest_depth(solid.bounds(), camera)});
+  };
+  const double depth_min = scene.scanner.range_min;
+  for (const SolidBox& box : solids.bin) add(box, BoxOutline(box, camera, depth_min));
+  for (const auto& box : solids.boxes_around) add(box.solid, BoxOutline(box.solid, camera, depth_min));
+  for (const auto& cylinder : solids.cylinders_around)
+    add(cylinder.solid, CylinderOutline(cylinder.solid, camera, depth_min));
 }
 
 double BinFront::first_before(double depth, int column, int row) {
   inside_.clear();
-  for (const auto& [box, window, nearest] : boxes_) {
+  for (const auto& [solid, window, nearest] : parts_) {
     if (nearest > depth || column < window.x || column >= window.x + window.width || row < window.y ||
         row >= window.y + window.height)
       continue;
-    const Interval inside = box.intersect(camera_.pixel_direction_in_world(column, row));
+    const Vec3 direction = camera_.pixel_direction_in_world(column, row);
+    const Interval inside = std::visit([&](const auto& shape) { return shape.intersect(direction); }, solid);
     if (!inside.empty()) inside_.push_back(inside);
   }
   return inside_.empty() ? std::numeric_limits<double>::infinity() : first_boundary(inside_, depth_min_);

@@ -1,6 +1,8 @@
 // What of one pixel's bodies is in front.
 #pragma once
 
+#include <variant>
+
 #include "scan/ray_caster.hpp"
 #include "tubebin/scene/camera.hpp"
 
@@ -17,25 +19,25 @@ struct Layer {
   }
 };
 
-/// The bin as far as it can stand before something.
+/// The bin, and what stands around it, as far as they can stand before something.
 class BinFront {
  public:
-  struct BinBox {
-    SolidBox box;
+  struct Part {
+    std::variant<SolidBox, SolidCylinder> solid;
     scene::PixelWindow window;
     double nearest_depth = 0.0;
   };
 
   BinFront(const scene::Scene& scene, const scene::Camera& camera);
 
-  const std::vector<BinBox>& boxes() const { return boxes_; }
-  /// The bin's first surface along the pixel's ray, if it may be before `depth`; else infinity.
+  const std::vector<Part>& parts() const { return parts_; }
+  /// Their first surface along the pixel's ray, if it may be before `depth`; else infinity.
   double first_before(double depth, int column, int row);
 
  private:
   const scene::Camera& camera_;
   double depth_min_;
-  std::vector<BinBox> boxes_;
+  std::vector<Part> parts_;
   std::vector<Interval> inside_;
 };
 

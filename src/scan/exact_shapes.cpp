@@ -66,6 +66,12 @@ std::array<Vec3, 8> SolidBox::corners() const {
   return corners;
 }
 
+Eigen::AlignedBox3d SolidBox::bounds() const {
+  Eigen::AlignedBox3d bounds;
+  for (const Vec3& corner : corners()) bounds.extend(corner);
+  return bounds;
+}
+
 Interval SolidBox::intersect(const Vec3& direction) const {
   if (!is_turned_) return scan::intersect(box_, inverse_direction(direction));
   DirectionOf<double> own;

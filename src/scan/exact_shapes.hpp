@@ -102,6 +102,7 @@ class SolidBox {
   const Eigen::AlignedBox3d& box() const { return box_; }
   /// In those of the rays; numbered as a box's.
   std::array<Vec3, 8> corners() const;
+  Eigen::AlignedBox3d bounds() const;
   Interval intersect(const Vec3& direction) const;
   template <typename Real>
   void turn(const DirectionOf<Real>& direction, DirectionOf<Real>& own) const;

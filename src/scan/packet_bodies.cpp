@@ -27,9 +27,10 @@ PacketBodies::PacketBodies(const SceneSolids& solids, const scene::Camera& camer
   };
   for (const auto& cylinder : solids.cylinders) add_solid(CylinderOutline(cylinder.solid, camera, depth_min));
   for (const auto& sphere : solids.spheres) add_solid(SphereOutline(sphere.solid, camera, depth_min));
+  for (const auto& cylinder : solids.cylinders_around) add_solid(CylinderOutline(cylinder.solid, camera, depth_min));
+  for (const auto& box : solids.boxes_around) add_solid(BoxOutline(box.solid, camera, depth_min));
   for (std::size_t box = 0; box < solids.bin.size(); ++box) {
-    const scene::PixelWindow seen =
-        view_window({{}, {}, {solids.bin[box]}}, SeenBodies::bin_and_tubes, camera, depth_min);
+    const scene::PixelWindow seen = BoxOutline(solids.bin[box], camera, depth_min).window();
     for (int row = seen.y; row < seen.y + seen.height; ++row)
       for_each_packet(row, seen.x, seen.x + seen.width, [&](BodiesInReach& bodies) { bodies.boxes |= box_flag(box); });
   }

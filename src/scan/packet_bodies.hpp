@@ -15,14 +15,26 @@ using BoxFlags = std::uint64_t;
 constexpr BoxFlags box_flag(std::size_t box) { return BoxFlags{1} << box; }
 constexpr BoxFlags kAllBoxes = ~BoxFlags{0};
 
-/// The bodies that a packet may meet. Of the tubes' solids it names a few; where there are more, a search tree is the
-/// shorter way.
+/// Of the solids of the tubes and of what stands around, the i-th.
+template <typename Visit>
+void visit_solid(const SceneSolids& solids, std::size_t i, const Visit& visit) {
+  const auto visit_in = [&](const auto& some) {
+    if (i < some.size()) return visit(some[i]), true;
+    i -= some.size();
+    return false;
+  };
+  visit_in(solids.cylinders) || visit_in(solids.spheres) || visit_in(solids.cylinders_around) ||
+      visit_in(solids.boxes_around);
+}
+
+/// The bodies that a packet may meet. Of the solids beside the bin's it names a few; where there are more, a search tree
+/// is the shorter way.
 struct BodiesInReach {
   static constexpr std::size_t kFew = 6;
 
   BoxFlags boxes = 0;
   std::uint32_t solid_count = 0;
-  std::array<std::uint32_t, kFew> solids{};  ///< the first of them; cylinders are counted first, then spheres
+  std::array<std::uint32_t, kFew> solids{};  ///< the first of them, as numbered by visit_solid
 };
 
 /// Packets lie side by side in the rows of a window, the first at its left side.

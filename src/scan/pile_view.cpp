@@ -166,7 +166,7 @@ class RowCounter {
   struct Column {
     cloud::Label last = 0;        ///< tube that was marked last
     std::uint32_t tubes = 0;      ///< that appear here
-    bool may_be_behind = false;   ///< a part of the bin may stand before a tube
+    bool may_be_behind = false;   ///< the bin, or what stands around, may be before a tube
     std::int32_t top = kNoLayer;  ///< in layers_, of the tube that was measured last
   };
 
@@ -187,9 +187,9 @@ class RowCounter {
       ++view_.amodal_pixels[run.label - 1];
     }
     const double deepest = deepest_[run.label - 1][run.solid];
-    for (const BinFront::BinBox& box : occlusions_.bin().boxes()) {
-      const scene::PixelWindow& window = box.window;
-      if (box.nearest_depth > deepest || run.row < window.y || run.row >= window.y + window.height) continue;
+    for (const BinFront::Part& part : occlusions_.bin().parts()) {
+      const scene::PixelWindow& window = part.window;
+      if (part.nearest_depth > deepest || run.row < window.y || run.row >= window.y + window.height) continue;
       for (int i = std::max(run.columns.begin, window.x); i < std::min(run.columns.end, window.x + window.width); ++i)
         at(i).may_be_behind = true;
     }

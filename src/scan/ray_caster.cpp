@@ -145,6 +145,8 @@ RayCaster::RayCaster(SceneSolids solids, double depth_min, double depth_max)
       scene_(rtcNewScene(device().get())) {
   attach(device(), scene_, solids_.cylinders);
   attach(device(), scene_, solids_.spheres);
+  attach(device(), scene_, solids_.cylinders_around);
+  attach(device(), scene_, solids_.boxes_around);
   rtcCommitScene(scene_.get());
   check_device(device());
 }
@@ -174,11 +176,8 @@ void RayCaster::find_first_hits(RayPacket& packet, int count, const BodiesInReac
 }
 
 void RayCaster::offer_few(RayPacket& packet, const BodiesInReach& bodies) const {
-  for (std::size_t i = 0; i < bodies.solid_count; ++i) {
-    const std::size_t solid = bodies.solids[i], cylinders = solids_.cylinders.size();
-    if (solid < cylinders) packet.offer(solids_.cylinders[solid]);
-    else packet.offer(solids_.spheres[solid - cylinders]);
-  }
+  for (std::size_t i = 0; i < bodies.solid_count; ++i)
+    visit_solid(solids_, bodies.solids[i], [&](const auto& solid) { packet.offer(solid); });
 }
 
 void RayCaster::offer_by_tree(RayPacket& packet, int count) const {
@@ -227,8 +226,10 @@ Hit RayCaster::first_boundary_hit(const Vec3& direction) const {
     }
   };
   for (const SolidBox& box : solids_.bin) add(box.intersect(direction), bodies[0].parts);
+  for (const auto& box : solids_.boxes_around) add(box.solid.intersect(direction), bodies[box.label].parts);
   add_solids(solids_.cylinders);
   add_solids(solids_.spheres);
+  add_solids(solids_.cylinders_around);
   Hit first;
   for (auto& [label, body] : bodies) {
     const double depth = first_boundary(body.parts, body.bores, depth_min_);

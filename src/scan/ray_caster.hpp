@@ -1,4 +1,4 @@
-// First surfaces along rays from the scanner: Embree finds the tube solids near a ray, double precision
+// First surfaces along rays from the scanner: Embree finds the solids near a ray, double precision
 // decides.
 #pragma once
 

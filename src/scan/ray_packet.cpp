@@ -49,6 +49,21 @@ Vec3 RayPacket::direction(int lane) const {
   enters_bore &= ~nearer;
 }
 
+/// `inverse`: of the directions, for boxes that are not turned.
+[[gnu::always_inline]] inline void RayPacket::Block::take(const SolidBox& box, const DirectionOf<Lanes>& inverse,
+                                                          cloud::Label label_inside, double depth_min) {
+  IntervalOf<Lanes> inside;
+  if (box.is_turned()) {
+    DirectionOf<Lanes> own;
+    box.turn(directions, own);
+    invert(own, own);
+    intersect(box.box(), own, inside);
+  } else {
+    intersect(box.box(), inverse, inside);
+  }
+  take(inside, label_inside, depth_min);
+}
+
 template <typename Solid>
 [[gnu::always_inline]] inline void RayPacket::offer_solid(const Labelled<Solid>& solid) {
   for (Block& block : blocks_) {
@@ -113,19 +128,16 @@ TUBEBIN_WIDE void RayPacket::offer_bin(const std::vector<SolidBox>& bin, BoxFlag
   for (Block& block : blocks_) {
     DirectionOf<Lanes> inverse;
     invert(block.directions, inverse);
-    for (std::size_t i = 0; i < bin.size(); ++i) {
-      if (!(boxes & box_flag(i))) continue;
-      IntervalOf<Lanes> inside;
-      if (bin[i].is_turned()) {
-        DirectionOf<Lanes> own;
-        bin[i].turn(block.directions, own);
-        invert(own, own);
-        intersect(bin[i].box(), own, inside);
-      } else {
-        intersect(bin[i].box(), inverse, inside);
-      }
-      block.take(inside, 0, depth_min_);
-    }
+    for (std::size_t i = 0; i < bin.size(); ++i)
+      if (boxes & box_flag(i)) block.take(bin[i], inverse, 0, depth_min_);
+  }
+}
+
+TUBEBIN_WIDE void RayPacket::offer(const Labelled<SolidBox>& box) {
+  for (Block& block : blocks_) {
+    DirectionOf<Lanes> inverse;
+    invert(block.directions, inverse);
+    block.take(box.solid, inverse, box.label, depth_min_);
   }
 }
 

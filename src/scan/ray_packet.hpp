@@ -42,6 +42,7 @@ class RayPacket {
   void offer_bin(const std::vector<SolidBox>& bin, BoxFlags boxes = kAllBoxes);
   void offer(const Labelled<SolidCylinder>& cylinder);
   void offer(const Labelled<SolidSphere>& sphere);
+  void offer(const Labelled<SolidBox>& box);
 
   /// Lowers the lanes' bounds to what is left to search.
   void limit(std::span<float, kLanes> search_ends) const;
@@ -71,6 +72,7 @@ class RayPacket {
     LaneFlags enters_bore = {};  ///< at `depth`
 
     void take(const IntervalOf<Lanes>& inside, cloud::Label label_inside, double depth_min);
+    void take(const SolidBox& box, const DirectionOf<Lanes>& inverse, cloud::Label label_inside, double depth_min);
   };
 
   const Block& block(int lane) const { return blocks_[static_cast<std::size_t>(lane / kBlockLanes)]; }

@@ -19,6 +19,11 @@ namespace {
 
 const cloud::Point kNoPoint = cloud::Point::Constant(std::numeric_limits<float>::quiet_NaN());
 
+SeenBodies bodies_of(scene::ScanRegion region) {
+  if (region == scene::ScanRegion::tubes) return SeenBodies::tubes;
+  return region == scene::ScanRegion::full ? SeenBodies::all : SeenBodies::bin_and_tubes;
+}
+
 scene::PixelWindow whole_image(const scene::Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
 
 /// Fills the points and labels of the pixels from (column, row) on to the right: no number and 0 where a pixel has no
@@ -68,7 +73,7 @@ void count_pixels(std::span<const cloud::Label> labels, std::vector<std::size_t>
   }
 }
 
-/// One point a pixel of `scan.window`; what lies outside `seen` shows neither bin nor tubes.
+/// One point a pixel of `scan.window`; what lies outside `seen` shows nothing.
 void scan_organized(const PointsOfRow& points_of_row, const scene::PixelWindow& seen,
                     const std::vector<cloud::Color>& colors, Scan& scan) {
   resize_empty(scan.cloud, scan.window);
@@ -114,9 +119,7 @@ Scan scan(const scene::Scene& scene, std::uint64_t seed) {
   const scene::Scanner& scanner = scene.scanner;
   const scene::Camera camera(scanner);
   SceneSolids solids = scene_solids(scene);
-  const bool tubes_alone = scanner.region == scene::ScanRegion::tubes;
-  const scene::PixelWindow seen =
-      view_window(solids, tubes_alone ? SeenBodies::tubes : SeenBodies::bin_and_tubes, camera, scanner.range_min);
+  const scene::PixelWindow seen = view_window(solids, bodies_of(scanner.region), camera, scanner.range_min);
   const RayCaster caster(std::move(solids), scanner.range_min, scanner.range_max);
 
   Scan scan;

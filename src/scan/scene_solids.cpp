@@ -14,17 +14,28 @@ void add_tube(const scene::PlacedTube& placed, cloud::Label label, const Vec3& s
     solids.spheres.push_back({SolidSphere(joint.center - scanner_in_world, joint.radius), label, joint.bore_radius});
 }
 
+SolidBox box_around_scanner(const scene::BinPart& part, const Vec3& scanner_in_world) {
+  const Eigen::Matrix3d axes = part.world_from_part.linear();
+  scene::Box box = part.box;
+  box.translate(axes.transpose() * Vec3(part.world_from_part.translation() - scanner_in_world));
+  return {box, axes, part.is_turned};
+}
+
 }  // namespace
 
 SceneSolids scene_solids(const scene::Scene& scene) {
   SceneSolids solids;
+  const Vec3& scanner = scene.scanner.position;
   cloud::Label label = 0;
-  for (const scene::PlacedTube& tube : scene.tubes) add_tube(tube, ++label, scene.scanner.position, solids);
-  for (const scene::BinPart& part : scene::bin_parts(scene.bin)) {
-    const Eigen::Matrix3d axes = part.world_from_part.linear();
-    scene::Box box = part.box;
-    box.translate(axes.transpose() * Vec3(part.world_from_part.translation() - scene.scanner.position));
-    solids.bin.emplace_back(box, axes, part.is_turned);
+  for (const scene::PlacedTube& tube : scene.tubes) add_tube(tube, ++label, scanner, solids);
+  for (const scene::BinPart& part : scene::bin_parts(scene.bin))
+    solids.bin.push_back(box_around_scanner(part, scanner));
+  for (const scene::BinPart& part : scene::surrounding_boxes(scene))
+    solids.boxes_around.push_back({box_around_scanner(part, scanner), 0});
+  for (const scene::StandingCylinder& cylinder : scene::surrounding_cylinders(scene)) {
+    const Vec3 base = cylinder.position - scanner;
+    solids.cylinders_around.push_back(
+        {SolidCylinder(base, base + cylinder.height * Vec3::UnitZ(), cylinder.radius), 0});
   }
   return solids;
 }

@@ -16,11 +16,13 @@ struct Labelled {
   double bore_radius = 0.0;  ///< metres; 0: the solid has no bore
 };
 
-/// Tubes by tube::TubeSolids, the bin by scene::bin_parts.
+/// Tubes by tube::TubeSolids, the bin by scene::bin_parts, and what stands around it, which has its label, too.
 struct SceneSolids {
   std::vector<Labelled<SolidCylinder>> cylinders;
   std::vector<Labelled<SolidSphere>> spheres;  ///< where two or more cylinders meet, and nodes alone
   std::vector<SolidBox> bin;
+  std::vector<Labelled<SolidBox>> boxes_around = {};
+  std::vector<Labelled<SolidCylinder>> cylinders_around = {};
 };
 
 SceneSolids scene_solids(const scene::Scene& scene);

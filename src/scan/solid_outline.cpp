@@ -81,6 +81,9 @@ Columns CylinderOutline::columns(int row) const {
           std::min(all.end, static_cast<int>(std::ceil(std::max(right(from), right(to)))))};
 }
 
+BoxOutline::BoxOutline(const SolidBox& box, const scene::Camera& camera, double depth_min)
+    : window_(view_window({{}, {}, {box}}, SeenBodies::bin_and_tubes, camera, depth_min)) {}
+
 SphereOutline::SphereOutline(const SolidSphere& sphere, const scene::Camera& camera, double depth_min)
     : window_(window_of(sphere, camera, depth_min)) {}
 

@@ -42,6 +42,18 @@ class CylinderOutline {
   bool is_hull_ = false;
 };
 
+/// The pixels in which a box may appear.
+class BoxOutline {
+ public:
+  BoxOutline(const SolidBox& box, const scene::Camera& camera, double depth_min);
+
+  const scene::PixelWindow& window() const { return window_; }
+  Columns columns(int) const { return {window_.x, window_.x + window_.width}; }
+
+ private:
+  scene::PixelWindow window_;
+};
+
 /// The pixels in which a ball may appear.
 class SphereOutline {
  public:

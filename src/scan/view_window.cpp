@@ -119,8 +119,12 @@ scene::PixelWindow view_window(const SceneSolids& solids, SeenBodies bodies, con
   ViewBounds bounds(camera, depth_min);
   for (const auto& cylinder : solids.cylinders) bounds.add_cylinder(cylinder.solid);
   for (const auto& sphere : solids.spheres) bounds.add_sphere(sphere.solid);
-  if (bodies == SeenBodies::bin_and_tubes)
+  if (bodies != SeenBodies::tubes)
     for (const SolidBox& box : solids.bin) bounds.add_box(box);
+  if (bodies == SeenBodies::all) {
+    for (const auto& box : solids.boxes_around) bounds.add_box(box.solid);
+    for (const auto& cylinder : solids.cylinders_around) bounds.add_cylinder(cylinder.solid);
+  }
   return bounds.window();
 }
 

@@ -6,7 +6,7 @@
 
 namespace tubebin::scan {
 
-enum class SeenBodies { tubes, bin_and_tubes };
+enum class SeenBodies { tubes, bin_and_tubes, all };
 
 /// The pixels whose centres lie within the bounds of the solids' projection: no pixel outside sees one of
 /// them at depth_min or beyond. The bounds are exact for solids that lie wholly beyond that depth and within

@@ -13,7 +13,8 @@ tube::TubeSolids PlacedTube::solids_in_world() const {
 Scene seen_from(const Scene& scene, std::size_t source) {
   return {.bin = scene.bin,
           .scanner = source == 0 ? scene.scanner : scene.further_scanners.at(source - 1),
-          .tubes = scene.tubes};
+          .tubes = scene.tubes,
+          .surroundings = scene.surroundings};
 }
 
 Pose Scanner::world_from_scanner() const {

@@ -57,6 +57,12 @@ Bin read_bin(const JsonPlace& place) {
   return bin;
 }
 
+Surroundings read_surroundings(const JsonPlace& place) {
+  Surroundings surroundings;
+  place.fields([&](Fields& fields) { describe(fields, surroundings); });
+  return surroundings;
+}
+
 PixelWindow read_window(const JsonPlace& place, const Scanner& scanner) {
   const auto read = [&](const char* key, int max) { return place.at(key).integer({0.0, static_cast<double>(max)}); };
   PixelWindow window;
@@ -215,6 +221,7 @@ SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
   record.seed = root.at("seed").whole(0, std::numeric_limits<std::uint64_t>::max());
   record.scene.bin = read_bin(root.at("bin"));
   record.colors.push_back(read_color(root.at("bin").at("color")));
+  if (root.has("surroundings")) record.scene.surroundings = read_surroundings(root.at("surroundings"));
   record.scene.scanner = read_scanner(root.at("scanner"));
   record.window = read_window(root.at("scanner").at("window"), record.scene.scanner);
   if (root.has("further_scanners"))

@@ -18,6 +18,12 @@ OrderedJson bin_to_json(Bin bin, cloud::Color color) {
   return json;
 }
 
+OrderedJson surroundings_to_json(Surroundings surroundings) {
+  OrderedJson json = {{"label", 0}};
+  json.update(fields_to_json([&](Fields& fields) { describe(fields, surroundings); }));
+  return json;
+}
+
 OrderedJson scanner_to_json(Scanner scanner, const PixelWindow& window) {
   const Camera camera(scanner);
   OrderedJson json = fields_to_json([&](Fields& fields) { describe(fields, scanner); });
@@ -137,6 +143,7 @@ std::string format_scene_json(const SceneRecord& record) {
                       {"scanner", scanner_to_json(record.scene.scanner, record.window)},
                       {"tubes", OrderedJson::array()},
                       {"contacts", OrderedJson::array()}};
+  if (record.scene.surroundings) json["surroundings"] = surroundings_to_json(*record.scene.surroundings);
   if (!record.further_windows.empty()) json["further_scanners"] = further_scanners_to_json(record);
   for (std::size_t k = 0; k < record.scene.tubes.size(); ++k)
     json["tubes"].push_back(tube_to_json(record.scene.tubes[k], k + 1, record.colors[k + 1], record.tube_pixels[k]));

@@ -75,6 +75,15 @@ TEST(DatasetConfig, RefusesValuesThatContradictEachOther) {
               HasSubstr("scanner.effects.projector.focus_distance: 2 m is not beyond"));
   EXPECT_THAT(refusal_of("bin: {width: 0.1, corner_radius: 0.06}\n"),
               AllOf(HasSubstr("bin.corner_radius: 0.06 m"), HasSubstr("up to 0.05 m")));
+  EXPECT_THAT(refusal_of("surroundings: {boxes: {count_max: 2}}\n"),
+              AllOf(StartsWith("c.yaml:1:35: surroundings.boxes.count_max: 2 need a table"),
+                    HasSubstr("surroundings.table.length")));
+  EXPECT_THAT(refusal_of("surroundings: {table: {length: 1, width: 0.2}}\n"),
+              AllOf(HasSubstr("surroundings.table.width: 0.2 m"), HasSubstr("at least 0.41 m")));
+  EXPECT_THAT(refusal_of("surroundings: {table: {length: 1, width: 1}, boxes: {size_min: 0.3}}\n"),
+              HasSubstr("surroundings.boxes.size_max: 0.2 is below surroundings.boxes.size_min = 0.3"));
+  EXPECT_THAT(refusal_of("surroundings: {table: {length: 1, width: 1}, cylinders: {count_min: 3}}\n"),
+              HasSubstr("surroundings.cylinders.count_max: 0 is below"));
   EXPECT_THAT(refusal_of("tubes: [1, 5, 1]\n"), StartsWith("c.yaml:1:8: tubes: 1 stands in the list twice"));
 }
 
@@ -119,6 +128,9 @@ TEST(DatasetConfig, CommittedFilesHoldThePapersAndThePublishedValues) {
   EXPECT_EQ(published_b.set, "B");
   EXPECT_NO_THROW(load_config(source_file("config/physics_paper.yaml")));
   for (const DatasetConfig& paper : {a, b, published_a, published_b}) EXPECT_FALSE(paper.scanner.effects.any());
+  const DatasetConfig cell = load_config(source_file("config/cell.yaml"));
+  EXPECT_EQ(cell.tube.length, a.tube.length);
+  EXPECT_EQ(cell.scanner.region, scene::ScanRegion::full);
   const DatasetConfig zivid_like = load_config(source_file("config/scanner_zivid_like.yaml"));
   EXPECT_TRUE(zivid_like.scanner.effects.any());
   for (const std::string& difference : differences(a, zivid_like))

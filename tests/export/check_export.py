@@ -345,7 +345,8 @@ def check_sdf(dataset, export, *published_worlds):
             assert set(element_paths(world)) <= paths | ADDED, sorted(set(element_paths(world)) - paths - ADDED)
         assert not [path for path in WORLD if world.find(path) is None]
         models = {model.get("name"): model for model in world.findall("model")}
-        assert set(models) == {"scanner", "bin"} | {str(tube["label"]) for tube in scene.truth["tubes"]}
+        around = ["surroundings"] if "surroundings" in scene.truth else []
+        assert set(models) == {"scanner", "bin", *around, *(str(tube["label"]) for tube in scene.truth["tubes"])}
         camera = models["scanner"].find("link/sensor[@type='depth']/camera")
         assert not [path for path in CAMERA if camera.find(path) is None]
         turn, place = pose_of(models["scanner"])
@@ -353,6 +354,9 @@ def check_sdf(dataset, export, *published_worlds):
         optical = np.array(scene.truth["scanner"]["pose"]["rotation"])
         assert np.allclose(turn[:, 0], optical[:, 2]) and np.allclose(turn[:, 2], -optical[:, 1])
         assert not [path for path in BIN if models["bin"].find(path) is None]
+        shapes = [shape for name in ["bin", *around] for shape in models[name].findall("link/visual")]
+        background = scene.xyz[scene.seen & (scene.label == 0)].astype(float)[::7]
+        assert np.abs(outside_of(shapes, background)).max(initial=0) < 1e-5, name
         folder = f"{export}/{published_name(name, 'gazebo_worlds', '')}".rsplit("/", 1)[0]
         for tube in scene.truth["tubes"]:
             where = f"{name}, tube {tube['label']}"
@@ -381,13 +385,16 @@ def check_sdf_looks(model, points, folder, where):
 
 
 def outside_of(parts, points):
-    """How far points lie outside of the union of cylinders and balls; below 0 within."""
+    """How far points lie outside of the union of boxes, cylinders and balls; below 0 within."""
     nearest = np.full(len(points), np.inf)
     for part in parts:
         turn, place = pose_of(part)
         local = (points - place) @ turn
         if part.find("geometry/sphere") is not None:
             outside = np.linalg.norm(local, axis=1) - float(part.findtext("geometry/sphere/radius"))
+        elif part.find("geometry/box") is not None:
+            beyond = np.abs(local) - np.array(part.findtext("geometry/box/size").split(), float) / 2
+            outside = np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(beyond.max(axis=1), 0)
         else:
             beside = np.hypot(local[:, 0], local[:, 1]) - float(part.findtext("geometry/cylinder/radius"))
             beyond = np.abs(local[:, 2]) - float(part.findtext("geometry/cylinder/length")) / 2

@@ -86,6 +86,20 @@ TEST_F(ExportDataset, KindsAreObjectsCategoriesAndNames) {
   expect_agreement_of(kinds, "sdf", {});
 }
 
+TEST_F(ExportDataset, HasWhatStandsAroundTheBin) {
+  write_text(in_folder("cell.yaml"),
+             "set: S\nseed: 5\ntubes: [3]\ncases: 2\n"
+             "surroundings: {table: {length: 1.9, width: 1.5}, boxes: {count_min: 2, count_max: 2}, "
+             "cylinders: {count_min: 2, count_max: 2}, bins: 1}\n"
+             "scanner: {position: [0, -0.8, 1.4], rotation_deg: [30, 0, 0], width: 320, height: 240, region: full}\n");
+  const std::string cell = in_folder("cell");
+  const ProgramResult made = run_generate_dataset({in_folder("cell.yaml"), "--output", cell, "--quiet"});
+  ASSERT_EQ(made.exit_code, 0) << made.error;
+  expect_agreement_of(cell, "bop", {"--crop"}, {"crop"});
+  expect_agreement_of(cell, "npz", {"--normals"});
+  expect_agreement_of(cell, "sdf", {});
+}
+
 TEST_F(ExportDataset, RefusesWhatAFormatLacks) {
   const auto refused = [&](const std::string& format, const std::string& option) {
     return Program(

@@ -67,6 +67,63 @@ TEST(Scanner, AgreesWithSphereTracingInABinWithLeaningWallsAndARim) {
   EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 1000);
 }
 
+TEST(Scanner, AgreesWithSphereTracingAmongWhatStandsAround) {
+  scene::Scene scene = random_scene(8, 6);
+  scene.surroundings = {{.table = {.position = {0.0, 0.0, -0.05}, .size = {1.4, 1.2, 0.03}},
+                         .boxes = {{.position = {0.5, 0.1, -0.02}, .yaw_deg = 35.0, .size = {0.2, 0.1, 0.3}}},
+                         .cylinders = {{.position = {-0.4, -0.4, -0.02}, .radius = 0.06, .height = 0.5},
+                                       {.position = {0.1, -0.35, -0.02}, .radius = 0.04, .height = 0.1}},
+                         .bins = {{.position = {0.1, 0.75, 0.0}, .yaw_deg = 100.0}}}};
+  for (const double draft_deg : {0.0, 7.0}) {
+    scene.bin.draft_deg = draft_deg;
+    look_closely(scene.scanner, 120, 90);
+    scene.scanner.position = {-0.3, -1.2, 1.2};
+    scene.scanner.rotation_deg = {45.0, 0.0, -10.0};
+    scene.scanner.horizontal_fov_deg = 70.0;
+    EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 3000);
+    scene.scanner.position = {0.0, 0.0, 1.6};  // where the bin's window has them in part
+    scene.scanner.rotation_deg = Vec3::Zero();
+    EXPECT_GT(expect_agreement_with_sphere_tracing(scene), 3000);
+  }
+}
+
+TEST(Scanner, SeesStandingSolidsWhereClosedFormsHaveThem) {
+  scene::Scene scene;
+  scene.bin.length = scene.bin.width = 0.01;  // out of the way
+  scene.bin.height = 0.001;
+  const scene::StandingCylinder cylinder = {.position = {0.3, 0.0, -0.02}, .radius = 0.08, .height = 0.25};
+  const scene::StandingBox box = {.position = {-0.3, 0.0, -0.02}, .yaw_deg = 0.0, .size = {0.2, 0.1, 0.15}};
+  scene.surroundings = {.table = {.position = {0.0, 0.0, -0.05}, .size = {1.2, 1.0, 0.03}},
+                        .boxes = {box},
+                        .cylinders = {cylinder},
+                        .bins = {}};
+  scene.scanner.region = scene::ScanRegion::full;
+  scene.scanner.width = 321;
+  scene.scanner.height = 241;
+  const scene::Camera camera(scene.scanner);
+  const cloud::Cloud cloud = scan(scene).cloud;
+  int tops = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 way =
+        camera.pixel_direction_in_world(static_cast<int>(i % cloud.width), static_cast<int>(i / cloud.width));
+    const auto at_height = [&](double z) -> Vec3 { return scene.scanner.position + (2.0 - z) / -way.z() * way; };
+    const Vec3 on_cylinder = at_height(0.23), on_box = at_height(0.13), on_table = at_height(-0.02);
+    const Vec3 p = cloud.points[i].cast<double>();
+    if ((on_cylinder - cylinder.position).head<2>().norm() < 0.08 - 1e-9) {
+      EXPECT_LT((p - on_cylinder).norm(), kSurfaceTolerance);
+      ++tops;
+    } else if (std::abs(on_box.x() + 0.3) < 0.1 - 1e-9 && std::abs(on_box.y()) < 0.05 - 1e-9) {
+      EXPECT_LT((p - on_box).norm(), kSurfaceTolerance);
+      ++tops;
+    } else if (std::abs(on_table.x()) > 0.6 + 1e-9 || std::abs(on_table.y()) > 0.5 + 1e-9) {
+      EXPECT_FALSE(cloud::is_finite(cloud.points[i]));  // beyond the table, and nothing stands so high
+    } else if ((on_table - cylinder.position).head<2>().norm() > 0.15 && std::abs(on_table.x() + 0.3) > 0.2) {
+      EXPECT_TRUE(cloud::is_finite(cloud.points[i]));
+    }
+  }
+  EXPECT_GT(tops, 500);
+}
+
 TEST(Scanner, ShowsALeaningWallWhereItIs) {
   scene::Scene scene;
   scene.bin.draft_deg = 10.0;

@@ -113,6 +113,31 @@ inline double bin_distance(const Vec3& p, const scene::Bin& bin) {
   return std::min(walls, box_distance(p, {-x - w, -y - w, -w}, {x + w, y + w, 0.0}));
 }
 
+/// A solid box or cylinder that stands with the middle of its lower face at a place.
+inline double standing_distance(const Vec3& p, const scene::StandingBox& box) {
+  const double c = std::cos(radians(box.yaw_deg)), s = std::sin(radians(box.yaw_deg));
+  const Vec3 from = p - box.position, half(box.size.x() / 2, box.size.y() / 2, 0.0);
+  return box_distance({c * from.x() + s * from.y(), c * from.y() - s * from.x(), from.z()}, -half,
+                      half + Vec3(0.0, 0.0, box.size.z()));
+}
+inline double standing_distance(const Vec3& p, const scene::StandingCylinder& cylinder) {
+  return cylinder_distance(p, cylinder.position, cylinder.position + Vec3(0.0, 0.0, cylinder.height), cylinder.radius);
+}
+
+inline double surroundings_distance(const Vec3& p, const scene::Surroundings& around, const scene::Bin& form) {
+  double nearest = standing_distance(p, around.table);
+  for (const scene::StandingBox& box : around.boxes) nearest = std::min(nearest, standing_distance(p, box));
+  for (const scene::StandingCylinder& cylinder : around.cylinders)
+    nearest = std::min(nearest, standing_distance(p, cylinder));
+  for (const scene::StandingBin& bin : around.bins) {
+    const double c = std::cos(radians(bin.yaw_deg)), s = std::sin(radians(bin.yaw_deg));
+    const Vec3 from = p - bin.position;
+    nearest =
+        std::min(nearest, bin_distance({c * from.x() + s * from.y(), c * from.y() - s * from.x(), from.z()}, form));
+  }
+  return nearest;
+}
+
 struct TracedHit {
   bool found = false;
   cloud::Label label = 0;
@@ -122,10 +147,15 @@ struct TracedHit {
 class SphereTracer {
  public:
   explicit SphereTracer(const scene::Scene& scene)
-      : bin_(scene.bin), scanner_(scene.scanner), tubes_(scene.tubes.begin(), scene.tubes.end()) {}
+      : bin_(scene.bin),
+        surroundings_(scene.surroundings),
+        scanner_(scene.scanner),
+        tubes_(scene.tubes.begin(), scene.tubes.end()) {}
 
   double distance_to(const Vec3& p, cloud::Label label) const {
-    return label == 0 ? bin_distance(p, bin_) : tubes_[label - 1].distance(p);
+    if (label > 0) return tubes_[label - 1].distance(p);
+    const double to_bin = bin_distance(p, bin_);
+    return surroundings_ ? std::min(to_bin, surroundings_distance(p, *surroundings_, bin_)) : to_bin;
   }
 
   /// Walks from depth range_min to range_max + 1e-9, never farther than to the nearest surface. `direction`, in
@@ -159,6 +189,7 @@ class SphereTracer {
   }
 
   scene::Bin bin_;
+  std::optional<scene::Surroundings> surroundings_;
   scene::Scanner scanner_;
   std::vector<TubeSolid> tubes_;
 };

@@ -15,11 +15,13 @@ using testing::random_scene;
 
 constexpr float kRounding = 1e-5F;  // metres: of float32 points
 
-/// The full image that the scanner makes of these tubes, with or without a bin that hides nothing.
+/// The full image that the scanner makes of these tubes, with the bin and what stands around, or with a bin that hides
+/// nothing.
 cloud::Cloud scan_all(const scene::Scene& scene, const std::vector<scene::PlacedTube>& tubes, bool with_bin) {
   scene::Scene shown = {scene.bin, scene.scanner, tubes};
   shown.scanner.region = scene::ScanRegion::full;
-  if (!with_bin) shown.bin = {.length = 1e-6, .width = 1e-6, .height = 1e-6, .wall_thickness = 1e-6};
+  if (with_bin) shown.surroundings = scene.surroundings;
+  else shown.bin = {.length = 1e-6, .width = 1e-6, .height = 1e-6, .wall_thickness = 1e-6};
   return scan(shown).cloud;
 }
 
@@ -105,6 +107,23 @@ TEST(Visibility, AgreesWhenTheScannerIsTiltedAndTheBinCovers) {
   scene.scanner.position = {0.9, -0.1, 0.7};
   scene.scanner.rotation_deg = {0.0, 55.0, 0.0};
   expect_agreement_with_scans(scene);
+}
+
+TEST(Visibility, AgreesWhenWhatStandsAroundCovers) {
+  scene::Scene scene = random_scene(5, 32);
+  look_closely(scene.scanner, 240, 150);
+  scene.scanner.position = {1.2, -0.1, 0.9};
+  scene.scanner.rotation_deg = {0.0, 55.0, 0.0};
+  expect_same_counts(scene);
+  const PileView before = view_pile(scene);
+  scene.surroundings = {.table = {.position = {0.0, 0.0, -0.05}, .size = {1.4, 1.2, 0.03}},
+                        .boxes = {{.position = {0.45, -0.1, -0.02}, .yaw_deg = 20.0, .size = {0.1, 0.1, 0.5}}},
+                        .cylinders = {{.position = {0.5, 0.1, -0.02}, .radius = 0.05, .height = 0.4}},
+                        .bins = {{.position = {0.0, 0.75, 0.0}, .yaw_deg = 100.0}}};
+  expect_same_counts(scene);
+  expect_agreement_with_scans(scene);
+  EXPECT_EQ(view_pile(scene).amodal_pixels, before.amodal_pixels);
+  EXPECT_NE(view_pile(scene).occlusions, before.occlusions);
 }
 
 TEST(Visibility, AgreesWhenTheRangeBeginsAmongTheTubesAndEndsBeforeTheFloor) {

@@ -102,6 +102,26 @@ TEST(SceneJson, ABinThatIsNoBoxSaysSo) {
   EXPECT_THAT([&] { parse(broken.dump()); }, ::testing::ThrowsMessage<IoError>(HasSubstr("/bin/corner_radius")));
 }
 
+Surroundings make_surroundings() {
+  return {.table = {.position = {0.0, 0.0, -0.05}, .size = {1.6, 1.2, 0.03}},
+          .boxes = {{.position = {0.1 + 0.2, 0.5, -0.02}, .yaw_deg = 100.0 / 3.0, .size = {0.1, 0.2, 1.0 / 3.0}}},
+          .cylinders = {{.position = {-0.6, 0.0, -0.02}, .radius = 0.04, .height = 0.1}},
+          .bins = {{.position = {0.0, -0.5, 0.0}, .yaw_deg = 200.0 / 3.0}}};
+}
+
+TEST(SceneJson, WhatStandsAroundReadsBack) {
+  SceneRecord record = make_record(1);
+  EXPECT_FALSE(json::parse(format_scene_json(record)).contains("surroundings"));
+  record.scene.surroundings = make_surroundings();
+  const json written = json::parse(format_scene_json(record));
+  EXPECT_EQ(parse(written.dump()).scene.surroundings, record.scene.surroundings);
+
+  json broken = written;
+  broken["surroundings"]["cylinders"][0]["radius"] = -0.1;
+  EXPECT_THAT([&] { parse(broken.dump()); },
+              ::testing::ThrowsMessage<IoError>(HasSubstr("/surroundings/cylinders/0/radius")));
+}
+
 TEST(SceneJson, EverythingReadsBackBitByBit) {
   SceneRecord record = make_record(10);
   record.lift = {.lifted = 11, .force = 0.1 + 0.2, .dragged = {3, 10}, .moved = {{2, 1.0 / 3.0}}};
@@ -184,6 +204,7 @@ TEST(SceneJson, AgreesWithItsSchema) {
   EXPECT_EQ(validate(format_scene_json(make_record(0))), 0);
   SceneRecord noisy = make_record(1);
   noisy.scene.scanner.effects.range_noise.sigma = 3e-4;
+  noisy.scene.surroundings = make_surroundings();
   EXPECT_EQ(validate(format_scene_json(noisy)), 0);
   json wrong = json::parse(text);
   wrong["tubes"][1]["radius"] = -1;
@@ -198,6 +219,7 @@ TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   record.further_windows = {record.window};
   record.scene.scanner.effects.projector.enabled = true;  // else the scanner's effects are not there
   record.scene.bin.draft_deg = 3.0;                       // else it is a box
+  record.scene.surroundings = make_surroundings();
   record.lift = {.lifted = 3, .force = 0.6, .dragged = {1}, .moved = {{2, 0.004}}};
   const json scene = json::parse(format_scene_json(record));
   const auto keys = [](const json& object) {
@@ -208,6 +230,12 @@ TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   const json& top = schema["properties"];
   EXPECT_EQ(keys(scene), keys(top));
   EXPECT_EQ(keys(scene["bin"]), keys(top["bin"]["properties"]));
+  const json &around = scene["surroundings"], &around_schema = top["surroundings"]["properties"];
+  EXPECT_EQ(keys(around), keys(around_schema));
+  EXPECT_EQ(keys(around["table"]), keys(schema["$defs"]["standing_box"]["properties"]));
+  EXPECT_EQ(keys(around["boxes"][0]), keys(schema["$defs"]["standing_box"]["properties"]));
+  for (const char* list : {"cylinders", "bins"})
+    EXPECT_EQ(keys(around[list][0]), keys(around_schema[list]["items"]["properties"])) << list;
   EXPECT_EQ(keys(scene["scanner"]), keys(top["scanner"]["properties"]));
   EXPECT_EQ(keys(scene["lift"]), keys(top["lift"]["properties"]));
   EXPECT_EQ(keys(scene["lift"]["moved"][0]), keys(top["lift"]["properties"]["moved"]["items"]["properties"]));

@@ -7,7 +7,7 @@
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/yaml.hpp"
 #include "tubebin/physics/lift.hpp"
-#include "tubebin/scene/scene.hpp"
+#include "tubebin/scene/place_surroundings.hpp"
 #include "tubebin/tube/tube_generator.hpp"
 
 namespace tubebin::dataset {
@@ -42,6 +42,7 @@ struct DatasetConfig {
   tube::TubeOptions tube;
   std::vector<tube::TubeKind> kinds;  ///< of a mixed bin, instead of `tube`
   scene::Bin bin;
+  scene::SurroundingsOptions surroundings;
   physics::PhysicsOptions physics;
   scene::Scanner scanner;
   SequenceOptions sequence;

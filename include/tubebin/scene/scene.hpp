@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "tubebin/core/yaml.hpp"
 #include "tubebin/scene/scanner_effects.hpp"
+#include "tubebin/scene/surroundings.hpp"
 #include "tubebin/tube/solids.hpp"
 
 namespace tubebin::scene {
@@ -32,7 +34,7 @@ struct Bin {
 /// An axis-aligned solid box, metres.
 using Box = Eigen::AlignedBox3d;
 
-/// A solid box of a bin, in a frame of its own.
+/// A solid box, of a bin or of what stands around it, in a frame of its own.
 struct BinPart {
   Box box;
   Pose world_from_part = Pose::Identity();
@@ -114,9 +116,15 @@ struct Scene {
   Scanner scanner;
   std::vector<PlacedTube> tubes;               ///< tube k of the files and labels is tubes[k - 1]
   std::vector<Scanner> further_scanners = {};  ///< sources 1, 2, ... of a merged cloud; `scanner` is source 0
+  std::optional<Surroundings> surroundings = {};
 
   std::size_t source_count() const { return 1 + further_scanners.size(); }
 };
+
+/// The boxes that stand around the bin: the table, boxes, the parts of further bins.
+std::vector<BinPart> surrounding_boxes(const Scene& scene);
+/// The cylinders that do.
+std::vector<StandingCylinder> surrounding_cylinders(const Scene& scene);
 
 /// The scene with one of its scanners alone.
 Scene seen_from(const Scene& scene, std::size_t source);

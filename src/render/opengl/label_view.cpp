@@ -52,6 +52,7 @@ Image draw_label_view(const scene::Scene& scene, const scene::PixelWindow& windo
   for (const scene::BinPart& part : scene::bin_parts(scene.bin)) add_part(part, origin, kLabelFineness, bin);
   set_color(colors[0]);
   draw(bin);
+  draw(surroundings_mesh(scene, origin, kLabelFineness));
   for (std::size_t i = 0; i < scene.tubes.size(); ++i) {
     set_color(colors[i + 1]);
     draw(tube_mesh(scene.tubes[i], origin, kLabelFineness));

@@ -20,6 +20,7 @@ constexpr double kAzimuth = radians(-78.0);     // of the eye, from +x towards +
 constexpr double kFieldOfView = radians(26.0);  // vertical
 constexpr double kMargin = 1.06;                // of the scene's size, left free around it
 constexpr double kGlassCosine = 0.3;            // walls that face the eye more than this are glass
+constexpr cloud::Color kAroundColor = 0xBFC4CB;
 const Eigen::Vector3f kToSun = Eigen::Vector3f(-0.30F, -0.35F, 1.0F).normalized();
 
 /// A look from `eye` along -backward.
@@ -28,10 +29,16 @@ struct View {
   Vec3 right, up, backward;
 };
 
-/// What a picture must show: the bin and the tubes.
+/// What a picture must show: the bin, the tubes and what stands around.
 Eigen::AlignedBox3d scene_bounds(const scene::Scene& scene) {
   Eigen::AlignedBox3d bounds;
-  for (const scene::BinPart& part : scene::bin_parts(scene.bin)) bounds.extend(part.bounds_in_world());
+  for (const auto& parts : {scene::bin_parts(scene.bin), scene::surrounding_boxes(scene)})
+    for (const scene::BinPart& part : parts) bounds.extend(part.bounds_in_world());
+  for (const scene::StandingCylinder& cylinder : scene::surrounding_cylinders(scene)) {
+    const Vec3 reach(cylinder.radius, cylinder.radius, 0.0);
+    bounds.extend(Vec3(cylinder.position - reach));
+    bounds.extend(Vec3(cylinder.position + reach + cylinder.height * Vec3::UnitZ()));
+  }
   for (const scene::PlacedTube& placed : scene.tubes)
     for (int node = 0; node < static_cast<int>(placed.tube.nodes.size()); ++node)
       for (const double side : {-1.0, 1.0})
@@ -98,6 +105,7 @@ Mesh bin_walls(const scene::Bin& bin, Wall kind, const View& view, const Finenes
 /// What throws shadows, coarsely.
 std::vector<Mesh> shadow_casters(const scene::Scene& scene, const View& view) {
   std::vector<Mesh> casters = {bin_walls(scene.bin, Wall::solid, view, kCasterFineness)};
+  if (scene.surroundings) casters.push_back(surroundings_mesh(scene, Vec3::Zero(), kCasterFineness));
   for (const scene::PlacedTube& tube : scene.tubes) casters.push_back(tube_mesh(tube, Vec3::Zero(), kCasterFineness));
   return casters;
 }
@@ -119,6 +127,9 @@ class LitView {
     for (std::size_t i = 0; i < scene_.tubes.size(); ++i)
       draw_lit(tube_mesh(scene_.tubes[i], Vec3::Zero(), kLitFineness), colors[i + 1],
                {.alpha = 1.0F, .highlight = 0.10F});
+    if (scene_.surroundings)
+      draw_lit(surroundings_mesh(scene_, Vec3::Zero(), kLitFineness), kAroundColor,
+               {.alpha = 1.0F, .highlight = 0.02F});
     draw_table();
     glEnable(GL_CULL_FACE);
     glDepthMask(GL_FALSE);
