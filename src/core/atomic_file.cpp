@@ -4,9 +4,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <deque>
+#include <iterator>
+#include <set>
 #include <system_error>
 
 #include "tubebin/core/error.hpp"
@@ -35,6 +39,10 @@ class TemporaryFile {
       if (written >= 0) bytes.remove_prefix(static_cast<std::size_t>(written));
       else if (errno != EINTR) fail();
     }
+    ::sync_file_range(file_.get(), 0, 0, SYNC_FILE_RANGE_WRITE);  // only begins; what fails shows in sync()
+  }
+
+  void sync() {
     if (::fsync(file_.get()) != 0) fail();
     if (file_.close() != 0) fail();
   }
@@ -77,23 +85,48 @@ class TemporaryFile {
   FileDescriptor file_;
 };
 
-}  // namespace
-
-void write_atomically(const FolderEntry& entry, std::string_view bytes) {
+/// A rename would put a regular file in the place of a device, or fail at a folder.
+void refuse_if_no_file(const FolderEntry& entry) {
   struct stat status;
-  // A rename would put a regular file in the place of a device, or fail at a folder.
   if (::fstatat(entry.folder.get(), entry.name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0 &&
       !S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode))
     throw_io_error("{}: cannot be written: exists and is no regular file", entry.place);
+}
+
+}  // namespace
+
+void write_atomically(const FolderEntry& entry, std::string_view bytes) {
+  refuse_if_no_file(entry);
   TemporaryFile file(entry);
   file.write(bytes);
+  file.sync();
   file.rename_to_final();
   sync_folder(entry.folder, entry.place);
+}
+
+void write_all_atomically(const OutputFolder& output, const std::map<std::string, std::string>& files) {
+  constexpr std::ptrdiff_t kOpenFilesMax = 256;  // with a descriptor of its folder each; many systems allow 1024
+  std::set<ConfinedPath> folders;
+  for (auto begin = files.begin(); begin != files.end();) {
+    const auto end = std::next(begin, std::min(kOpenFilesMax, std::distance(begin, files.end())));
+    std::deque<FolderEntry> entries;
+    std::deque<TemporaryFile> written;
+    for (; begin != end; ++begin) {
+      const ConfinedPath name = begin->first;
+      folders.insert(name.parent());
+      refuse_if_no_file(entries.emplace_back(output.make_entry(name)));
+      written.emplace_back(entries.back()).write(begin->second);
+    }
+    for (TemporaryFile& file : written) file.sync();
+    for (TemporaryFile& file : written) file.rename_to_final();
+  }
+  for (const ConfinedPath& folder : folders) sync_folder(output.open(folder), output.place(folder));
 }
 
 bool create_atomically(const FolderEntry& entry, std::string_view bytes) {
   TemporaryFile file(entry);
   file.write(bytes);
+  file.sync();
   if (!file.link_to_final()) return false;
   sync_folder(entry.folder, entry.place);
   return true;

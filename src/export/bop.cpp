@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/json_reader.hpp"
 #include "export/formats.hpp"
+#include "export/mask_encoder.hpp"
 #include "export/symmetries.hpp"
 #include "export/tube_mesh_file.hpp"
 #include "tubebin/core/atomic_file.hpp"
@@ -77,9 +79,8 @@ Json pose_json(const scene::PlacedTube& placed, const scene::Camera& camera, int
 }
 
 Json info_json(const Mask& whole, const Mask& visible, const Raster<float>& depths) {
-  std::size_t valid = 0;
-  for (std::size_t i = 0; i < whole.values.size(); ++i) valid += whole.values[i] != 0 && depths.values[i] > 0.0F;
-  const std::size_t all = pixels_of(whole), seen = pixels_of(visible);
+  const auto valid = std::ranges::count_if(whole.pixels, [&](std::uint32_t i) { return depths.values[i] > 0.0F; });
+  const std::size_t all = whole.pixels.size(), seen = visible.pixels.size();
   return {{"bbox_obj", box_json(box_of(whole))},
           {"bbox_visib", box_json(box_of(visible))},
           {"px_count_all", all},
@@ -132,20 +133,22 @@ class BopFormat : public ExportFormat {
     const double scale = depth_scale(scene.record.scene.scanner);
     const Raster<float> depths = image.depths();
     const auto views = scan::view_tubes_alone(scene.record.scene);
+    const std::vector<Mask> visible = image.visible_masks();
+    const MaskEncoder masks(image.width(), image.height());
     SceneFiles files;
     Json poses = Json::array(), infos = Json::array(), models = Json::object();
     for (std::size_t k = 0; k < views.size(); ++k) {
       const scene::PlacedTube& placed = scene.record.scene.tubes[k];
       const int object = scene.entry.tubes[k].object;
       const TubeMeshFile mesh = tube_mesh_file(placed.tube);
-      const Mask whole = image.mask_of(views[k]), visible = image.visible_mask(static_cast<cloud::Label>(k + 1));
+      const Mask whole = image.mask_of(views[k]);
       for (const char* folder : kModelFolders)
         files.beside[fmt::format("{}/obj_{:06d}.ply", folder, object)] = mesh.ply;
-      files.scene[fmt::format("mask/000000_{:06d}.png", k)] = png_of(whole);
-      files.scene[fmt::format("mask_visib/000000_{:06d}.png", k)] = png_of(visible);
+      files.scene[fmt::format("mask/000000_{:06d}.png", k)] = masks.png_of(whole);
+      files.scene[fmt::format("mask_visib/000000_{:06d}.png", k)] = masks.png_of(visible[k]);
       models[std::to_string(object)] = model_json(mesh, placed.tube);
       poses.push_back(pose_json(placed, camera, object));
-      infos.push_back(info_json(whole, visible, depths));
+      infos.push_back(info_json(whole, visible[k], depths));
     }
     files.scene["rgb/000000.png"] = png_of_rgb(image.shaded_rgb(), image.width(), image.height());
     files.scene["depth/000000.png"] = png_of(depth_image(depths, scale));

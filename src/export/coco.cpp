@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/json_reader.hpp"
@@ -15,21 +16,21 @@ constexpr const char* kImage = "image.png";
 
 /// COCO's run lengths: down the columns, first those outside.
 Json run_lengths(const Mask& mask) {
+  const auto width = static_cast<std::uint32_t>(mask.width), height = static_cast<std::uint32_t>(mask.height);
+  std::vector<std::uint32_t> places;  // inside, counted down the columns
+  for (const std::uint32_t pixel : mask.pixels) places.push_back(pixel % width * height + pixel / width);
+  std::ranges::sort(places);
   Json counts = Json::array();
-  bool inside = false;
-  std::size_t run = 0;
-  for (int column = 0; column < mask.width; ++column)
-    for (int row = 0; row < mask.height; ++row) {
-      const auto i =
-          static_cast<std::size_t>(row) * static_cast<std::size_t>(mask.width) + static_cast<std::size_t>(column);
-      if ((mask.values[i] != 0) != inside) {
-        counts.push_back(run);
-        run = 0;
-        inside = !inside;
-      }
-      ++run;
-    }
-  counts.push_back(run);
+  std::uint32_t run_end = 0;  // of the last run inside
+  for (std::size_t i = 0; i < places.size();) {
+    std::uint32_t run = 1;
+    while (i + run < places.size() && places[i + run] == places[i] + run) ++run;
+    counts.push_back(places[i] - run_end);
+    counts.push_back(run);
+    run_end = places[i] + run;
+    i += run;
+  }
+  if (run_end < width * height) counts.push_back(width * height - run_end);
   return {{"size", {mask.height, mask.width}}, {"counts", std::move(counts)}};
 }
 
@@ -47,17 +48,16 @@ Json image_json(const SceneEntry& entry, const SceneImage& image) {
 }
 
 Json annotation_json(const SceneEntry& entry, std::size_t k, const Mask& visible, const Mask& whole) {
-  const std::size_t seen = pixels_of(visible), all = pixels_of(whole);
   return {{"id", entry.first_tube + static_cast<int>(k)},
           {"image_id", entry.number},
           {"category_id", entry.tubes[k].kind},
           {"iscrowd", 0},
-          {"area", seen},
+          {"area", visible.pixels.size()},
           {"bbox", box_json(visible)},
           {"segmentation", run_lengths(visible)},
           {"label", k + 1},
           {"amodal_bbox", box_json(whole)},
-          {"amodal_area", all},
+          {"amodal_area", whole.pixels.size()},
           {"amodal_segmentation", run_lengths(whole)}};
 }
 
@@ -81,12 +81,11 @@ class CocoFormat : public ExportFormat {
   SceneFiles export_scene(const SceneToExport& scene) const override {
     const SceneImage image(scene, region_);
     const auto views = scan::view_tubes_alone(scene.record.scene);
+    const std::vector<Mask> visible = image.visible_masks();
     Json annotations = Json::array();
-    for (std::size_t k = 0; k < views.size(); ++k) {
-      const Mask visible = image.visible_mask(static_cast<cloud::Label>(k + 1));
-      if (pixels_of(visible) == 0) continue;  // COCO has no instances that nothing shows
-      annotations.push_back(annotation_json(scene.entry, k, visible, image.mask_of(views[k])));
-    }
+    for (std::size_t k = 0; k < views.size(); ++k)
+      if (!visible[k].pixels.empty())  // COCO has no instances that nothing shows
+        annotations.push_back(annotation_json(scene.entry, k, visible[k], image.mask_of(views[k])));
     SceneFiles files;
     files.scene[kImage] = png_of_rgb(image.shaded_rgb(), image.width(), image.height());
     files.scene[kAnnotations] =

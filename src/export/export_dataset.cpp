@@ -175,10 +175,6 @@ std::vector<SceneEntry> number_scenes(const std::vector<Source>& sources) {
   return entries;
 }
 
-void write_below(const OutputFolder& output, const Files& files) {
-  for (const auto& [name, bytes] : files) write_atomically(output.make_entry(name), bytes);
-}
-
 /// In a worker process.
 jobs::AttemptResult export_one(const ExportFormat& format, const scene::DatasetFiles& dataset,
                                const scene::DatasetHashes& hashes, const OutputFolder& output, const Source& source,
@@ -195,7 +191,7 @@ jobs::AttemptResult export_one(const ExportFormat& format, const scene::DatasetF
   } catch (const IoError& error) {
     return jobs::failed_attempt("unreadable", error.what());  // this scene's fault: the others go on
   }
-  write_below(output, files.beside);
+  write_all_atomically(output, files.beside);
   const ConfinedPath path = format.scene_path(entry);
   if (const auto alone = files.scene.find(""); alone != files.scene.end()) {
     write_atomically(output.make_entry(path), alone->second);
@@ -267,7 +263,7 @@ ExportReport export_dataset(const ExportOptions& options, jobs::Progress::Style 
     write_atomically(output.make_entry(kIndex), format_index(sources, options.format));  // should it be gone
     std::vector<SceneEntry> complete;
     std::ranges::copy_if(entries, std::back_inserter(complete), is_complete);
-    write_below(output, format->summarize(complete, options.output));
+    write_all_atomically(output, format->summarize(complete, options.output));
   }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;

@@ -24,8 +24,6 @@ std::string encode(const void* pixels, int width, int height, png_uint_32 format
 
 }  // namespace
 
-std::string png_of(const Mask& mask) { return encode(mask.values.data(), mask.width, mask.height, PNG_FORMAT_GRAY); }
-
 std::string png_of(const Raster<std::uint16_t>& image) {
   return encode(image.values.data(), image.width, image.height, PNG_FORMAT_LINEAR_Y);
 }

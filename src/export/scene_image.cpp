@@ -96,20 +96,14 @@ Raster<float> SceneImage::depths() const {
   return depths;
 }
 
-Raster<int> SceneImage::labels() const {
-  Raster<int> labels(points_.width, points_.height, -1);
-  for (std::size_t i = 0; i < points_.values.size(); ++i)
-    if (const int point = points_.values[i]; point >= 0)
-      labels.values[i] = static_cast<int>(scene_.cloud.labels[static_cast<std::size_t>(point)]);
-  return labels;
-}
-
-Mask SceneImage::visible_mask(cloud::Label label) const {
-  Mask mask(points_.width, points_.height, 0);
-  for (std::size_t i = 0; i < points_.values.size(); ++i)
-    if (const int point = points_.values[i]; point >= 0)
-      mask.values[i] = scene_.cloud.labels[static_cast<std::size_t>(point)] == label ? 255 : 0;
-  return mask;
+std::vector<Mask> SceneImage::visible_masks() const {
+  std::vector<Mask> masks(scene_.record.scene.tubes.size(), {points_.width, points_.height, {}});
+  for (std::size_t i = 0; i < points_.values.size(); ++i) {
+    if (points_.values[i] < 0) continue;
+    const cloud::Label label = scene_.cloud.labels[static_cast<std::size_t>(points_.values[i])];
+    if (label > 0) masks[label - 1].pixels.push_back(static_cast<std::uint32_t>(i));
+  }
+  return masks;
 }
 
 // Lambert's cosine with some ambient light; the lamp is at the scanner, so nothing that it sees is in shadow.
@@ -133,23 +127,20 @@ std::vector<std::uint8_t> SceneImage::shaded_rgb() const {
 }
 
 Mask SceneImage::mask_of(const std::vector<scan::SeenPixel>& pixels) const {
-  Mask mask(region_.width, region_.height, 0);
+  Mask mask{region_.width, region_.height, {}};
   for (const scan::SeenPixel& pixel : pixels)
-    if (has(pixel.column, pixel.row)) mask.at(pixel.column - region_.x, pixel.row - region_.y) = 255;
+    if (has(pixel.column, pixel.row))
+      mask.pixels.push_back(
+          static_cast<std::uint32_t>((pixel.row - region_.y) * region_.width + pixel.column - region_.x));
   return mask;
 }
 
 PixelBox box_of(const Mask& mask) {
   Eigen::AlignedBox2i bounds;
-  for (std::size_t i = 0; i < mask.values.size(); ++i)
-    if (mask.values[i])
-      bounds.extend(Eigen::Vector2i(static_cast<int>(i) % mask.width, static_cast<int>(i) / mask.width));
+  for (const std::uint32_t pixel : mask.pixels)
+    bounds.extend(Eigen::Vector2i(static_cast<int>(pixel) % mask.width, static_cast<int>(pixel) / mask.width));
   if (bounds.isEmpty()) return {};
   return {bounds.min().x(), bounds.min().y(), bounds.sizes().x() + 1, bounds.sizes().y() + 1};
-}
-
-std::size_t pixels_of(const Mask& mask) {
-  return static_cast<std::size_t>(std::ranges::count(mask.values, std::uint8_t{255}));
 }
 
 }  // namespace tubebin::exports

@@ -26,7 +26,12 @@ struct Raster {
   }
 };
 
-using Mask = Raster<std::uint8_t>;  ///< 255 inside, 0 outside
+/// Some of an image's pixels: most images have many objects, each in few of their pixels.
+struct Mask {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint32_t> pixels;  ///< row x width + column, ascending, each once
+};
 
 /// The part of the scanner's image that is written. The bin's window is the same for all scenes of a data set: it covers
 /// the bin, and cuts off what of a tube looks past it.
@@ -46,12 +51,11 @@ class SceneImage {
   Eigen::Matrix3d intrinsics() const;
   /// Metres along the optical axis; 0 where nothing was seen.
   Raster<float> depths() const;
-  /// -1 where nothing was seen.
-  Raster<int> labels() const;
-  Mask visible_mask(cloud::Label label) const;
+  /// Where each tube is seen; of tube k at [k - 1].
+  std::vector<Mask> visible_masks() const;
   /// Three bytes a pixel: grey tubes in a darker bin, lit from the scanner, black where nothing was seen.
   std::vector<std::uint8_t> shaded_rgb() const;
-  /// Of pixels of the full image.
+  /// Of pixels of the full image, row by row.
   Mask mask_of(const std::vector<scan::SeenPixel>& pixels) const;
 
  private:
@@ -72,10 +76,8 @@ struct PixelBox {
   int height = -1;
 };
 PixelBox box_of(const Mask& mask);
-std::size_t pixels_of(const Mask& mask);
 
-/// PNG files' bytes: 8 bit grey, 16 bit grey, 8 bit red green blue.
-std::string png_of(const Mask& mask);
+/// PNG files' bytes: 16 bit grey, 8 bit red green blue.
 std::string png_of(const Raster<std::uint16_t>& image);
 std::string png_of_rgb(const std::vector<std::uint8_t>& rgb, int width, int height);
 

@@ -17,6 +17,9 @@ namespace {
 
 constexpr const char* kWriting = "cannot be written";
 
+/// At once, with a descriptor of its folder each: many systems let a program have 1024 open.
+constexpr std::size_t kOpenFilesMax = 256;
+
 /// The entry's unfinished sibling: hidden, so that the rename stays within one folder, and no other process's, should two
 /// make the same scene.
 FolderEntry unfinished_sibling(const FolderEntry& entry) {
@@ -142,15 +145,23 @@ class FolderTransaction {
   FolderTransaction(const OutputFolder& output, const ConfinedPath& name,
                     const std::map<std::string, std::string>& files)
       : folder_(output, name) {
-    for (const auto& [file, bytes] : files) files_.emplace_back(folder_.file(file), bytes);
+    for (const auto& [file, bytes] : files) {
+      if (files_.size() == kOpenFilesMax) sync_files();
+      files_.emplace_back(folder_.file(file), bytes);
+    }
   }
 
-  void commit() const {
-    for (const NewFile& file : files_) file.sync();
+  void commit() {
+    sync_files();
     folder_.rename_to_final();
   }
 
  private:
+  void sync_files() {
+    for (const NewFile& file : files_) file.sync();
+    files_.clear();
+  }
+
   UnfinishedFolder folder_;
   std::vector<NewFile> files_;
 };

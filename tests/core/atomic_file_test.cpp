@@ -63,6 +63,24 @@ TEST_F(AtomicFile, AFullDiskLeavesTheOldFileAndNoTemporary) {
   EXPECT_EQ(entries(), 1);
 }
 
+TEST_F(AtomicFile, ManyAtOnceNeedFewOpenFiles) {
+  std::map<std::string, std::string> files;
+  for (int i = 0; i < 1000; ++i) files[fmt::format("{}/{}", i % 2, i)] = std::to_string(i);
+  files["0/7"] = "new";
+  fs::create_directories(path("0"));
+  write_file_atomically(path("0/7"), "old");
+  rlimit before;
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit usual = {1024, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &usual), 0);
+  const std::string error = error_of([&] { write_all_atomically(OutputFolder(path("")), files); });
+  setrlimit(RLIMIT_NOFILE, &before);
+
+  EXPECT_EQ(error, "no error");
+  for (const auto& [name, bytes] : files) EXPECT_EQ(read_file(path(name)), bytes) << name;
+  EXPECT_EQ(std::distance(fs::recursive_directory_iterator(folder_), fs::recursive_directory_iterator()), 1003);
+}
+
 TEST_F(AtomicFile, ErrorsNamePathAndCause) {
   EXPECT_EQ(error_of([&] { read_file(path("none")); }), path("none") + ": cannot be read: No such file or directory");
   EXPECT_EQ(error_of([&] { read_file(path("")); }), path("") + ": cannot be read: is a folder");

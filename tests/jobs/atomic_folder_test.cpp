@@ -1,6 +1,7 @@
 #include "tubebin/jobs/atomic_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <thread>
@@ -67,6 +68,20 @@ TEST(WholeFolder, AppearsThoughAnotherRemovesTheEmptyFolderAroundIt) {
   done = true;
   remover.join();
   EXPECT_GT(removed, 0);
+}
+
+// As an export of hundreds of tubes, each of which has its masks.
+TEST(WholeFolder, OfManyFilesNeedsFewOpenFiles) {
+  const TemporaryFolder folder;
+  std::map<std::string, std::string> files;
+  for (int i = 0; i < 1000; ++i) files[fmt::format("mask/{}", i)] = std::to_string(i);
+  rlimit before;
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit usual = {1024, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &usual), 0);
+  EXPECT_NO_THROW(begin_whole_folder(OutputFolder(folder / ""), "001", files)());
+  setrlimit(RLIMIT_NOFILE, &before);
+  for (const auto& [name, bytes] : files) EXPECT_EQ(read_text(folder / ("001/" + name)), bytes) << name;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -23,6 +24,8 @@ bool create_file_atomically(const std::string& path, std::string_view bytes);
 /// Both for a name beneath an output folder; a link of that name is replaced, not followed.
 void write_atomically(const FolderEntry& entry, std::string_view bytes);
 bool create_atomically(const FolderEntry& entry, std::string_view bytes);
+/// Several files (bytes by path beneath it), each appearing whole, in less time than one after the other.
+void write_all_atomically(const OutputFolder& output, const std::map<std::string, std::string>& files);
 
 /// "host-1234": this process among all that share a file system, for names that no other uses.
 std::string process_name();
