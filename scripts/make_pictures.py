@@ -248,6 +248,17 @@ def draw_overview(work):
     save(beside([fit(preview, model.size), fit(Image.fromarray(truth), model.size), model]), "overview.png")
 
 
+def draw_full_bins(work):
+    """A hundred tubes and hoses of three radii, as previews, side by side."""
+    pictures = []
+    for config, scene in ("full_bin", "full100/001"), ("euro_bin", "euro10/001"), ("hoses", "hoses15/001"):
+        tubes = scene.split("/")[0].removeprefix(config.split("_")[0])
+        folder = work.run(config, "generate_dataset", ROOT / f"config/{config}.yaml", "--output", config, "--tubes", tubes,
+                          "--cases", "1", "--preview", "--quiet")
+        pictures.append(fit(Image.open(folder / scene / "preview.png").convert("RGB"), (360, 270)))
+    save(beside(pictures), "full_bins.png", colors=None)
+
+
 def fit(picture, size):
     """The picture, as large as fits, in the middle of a white one of the size."""
     picture = picture.copy()
