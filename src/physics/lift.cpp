@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <deque>
-#include <numeric>
+#include <limits>
 
+#include "physics/rest_proof.hpp"
 #include "physics/rigid_world.hpp"
 #include "physics/settling.hpp"
 #include "tubebin/scene/pile_relations.hpp"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kForceWindow = 0.1;    ///< seconds over which the force is averaged: a jerk is no pull
 constexpr double kSpeedUpTime = 0.1;    ///< seconds from rest to full speed
+constexpr double kLongStepSpeed = 0.2;  ///< m/s; a long step takes this less far than a short one what falls
 constexpr double kAboveTheRim = 0.005;  ///< metres
 
 /// The pile while one of its tubes is pulled up.
@@ -26,26 +28,29 @@ class Pull {
   }
 
   void pull_out() {
-    for (double time = 0.0; !is_out(); time += options_.time_step) {
-      world_.pull(tube_, lift_.speed * std::min(1.0, time / kSpeedUpTime));
-      world_.step(options_.time_step);
+    for (double speed = 0.0; !is_out(); speed = lift_.speed * std::min(1.0, time_ / kSpeedUpTime)) {
+      const double time_step = next_time_step();
+      world_.pull(tube_, speed);
+      world_.step(time_step);
       ++steps_;
+      time_ += time_step;
       for (std::size_t i = 0; i < world_.size(); ++i) highest_[i] = std::max(highest_[i], world_.center_of_mass(i).z());
-      add_force(world_.pulling_force());
+      add_force(world_.pulling_force(), time_step);
+      if (!others_are_below(options_.rest_speed, options_.rest_turn_rate)) last_fast_ = time_;
     }
   }
 
-  LiftResult result(const scene::Bin& bin, std::uint64_t seed) const {
-    std::vector<scene::PlacedTube> left = world_.tubes();
-    left.erase(left.begin() + static_cast<std::ptrdiff_t>(tube_));
-    Random random(seed);
-    LiftResult result{
-        .rest = settle(left, bin, options_, random), .force = std::max(most_force_, mean_force()), .dragged = {}};
-    result.rest.figures.steps += steps_;
-    result.rest.figures.simulated_seconds += steps_ * options_.time_step;
+  /// Once it is out.
+  LiftResult let_the_rest_settle(const scene::Bin& bin, std::uint64_t seed) && {
+    LiftResult result{.rest = {}, .force = std::max(most_force_, mean_force()), .dragged = {}};
     for (std::size_t i = 0; i < world_.size(); ++i)
       if (i != tube_ && highest_[i] - start_heights_[i] > world_.tubes()[i].tube.radius_max())
         result.dragged.push_back(i < tube_ ? i : i - 1);
+    world_.remove_pulled();
+    Random random(seed);
+    result.rest = settle(std::move(world_), time_ - last_fast_, bin, options_, random);
+    result.rest.figures.steps += steps_;
+    result.rest.figures.simulated_seconds += time_;
     return result;
   }
 
@@ -63,16 +68,38 @@ class Pull {
                                 [&](const scene::Above& pair) { return pair.lower == lower; });
   }
 
-  void add_force(double force) {
-    forces_.push_back(force);
-    if (static_cast<double>(forces_.size()) * options_.time_step <= kForceWindow) return;
-    forces_.pop_front();
+  /// The long one while all is slow, once the contacts have found their forces.
+  double next_time_step() const {
+    const bool long_is_enough = time_ >= kSpeedUpTime && lift_.speed <= kLongStepSpeed &&
+                                others_are_below(kLongStepSpeed, std::numeric_limits<double>::infinity());
+    return long_is_enough ? options_.rest_time_step : options_.time_step;
+  }
+
+  bool others_are_below(double speed, double turn_rate) const {
+    for (std::size_t i = 0; i < world_.size(); ++i)
+      if (i != tube_ && !(world_.speed(i) < speed && world_.turn_rate(i) < turn_rate)) return false;
+    return true;
+  }
+
+  void add_force(double force, double seconds) {
+    forces_.push_back({force, seconds});
+    window_ += seconds;
+    if (!have_passed(kForceWindow, 0.0, window_)) return;
     most_force_ = std::max(most_force_, mean_force());
+    window_ -= forces_.front().seconds;
+    forces_.pop_front();
   }
 
   double mean_force() const {
-    return std::accumulate(forces_.begin(), forces_.end(), 0.0) / static_cast<double>(forces_.size());
+    double impulse = 0.0;
+    for (const StepForce& step : forces_) impulse += step.force * step.seconds;
+    return impulse / window_;
   }
+
+  struct StepForce {
+    double force = 0.0;  ///< N
+    double seconds = 0.0;
+  };
 
   std::size_t tube_;
   double rim_;
@@ -80,8 +107,11 @@ class Pull {
   const LiftOptions& lift_;
   RigidWorld world_;
   int steps_ = 0;
+  double time_ = 0.0;                            ///< seconds
+  double last_fast_ = 0.0;                       ///< seconds, of the others
   std::vector<double> start_heights_, highest_;  ///< metres, of the centres of mass
-  std::deque<double> forces_;
+  std::deque<StepForce> forces_;                 ///< of the last steps
+  double window_ = 0.0;                          ///< seconds, all theirs
   double most_force_ = 0.0;
 };
 
@@ -91,7 +121,7 @@ LiftResult lift_tube(const std::vector<scene::PlacedTube>& pile, std::size_t tub
                      const PhysicsOptions& options, const LiftOptions& lift, std::uint64_t seed) {
   Pull pull(pile, tube, bin, options, lift);
   pull.pull_out();
-  return pull.result(bin, seed);
+  return std::move(pull).let_the_rest_settle(bin, seed);
 }
 
 }  // namespace tubebin::physics

@@ -66,6 +66,18 @@ struct RigidWorld::Impl {
     shapes.emplace_back(tube);
   }
 
+  void remove(std::size_t i) {
+    dBodyDestroy(bodies[i]);
+    const auto erase = [i](auto& of_each) { of_each.erase(of_each.begin() + static_cast<std::ptrdiff_t>(i)); };
+    erase(tubes), erase(bodies), erase(inverse_masses), erase(inverse_inertias), erase(centers), erase(shapes);
+    near_cylinders = {};
+    std::erase_if(contacts, [i](const StepContact& c) { return c.first == i || c.second == i; });
+    for (StepContact& contact : contacts) {
+      if (contact.first != kBinBody && contact.first > i) --contact.first;
+      if (contact.second > i) --contact.second;
+    }
+  }
+
   static void set_pose(dBodyID body, const Pose& world_from_tube, const Vec3& center_in_tube) {
     const Vec3 center = world_from_tube * center_in_tube;
     dBodySetPosition(body, center.x(), center.y(), center.z());
@@ -178,7 +190,10 @@ RigidWorld::RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene:
   for (const scene::PlacedTube& tube : tubes) impl_->add_body(tube);
 }
 
+RigidWorld::RigidWorld(RigidWorld&&) noexcept = default;
+
 RigidWorld::~RigidWorld() {
+  if (!impl_) return;  // moved from
   dWorldDestroy(impl_->world);
   dThreadingFreeImplementation(impl_->threading);
 }
@@ -210,6 +225,11 @@ void RigidWorld::pull(std::size_t tube, double speed) {
   dBodySetKinematic(impl_->bodies[tube]);
   dBodySetLinearVel(impl_->bodies[tube], 0, 0, speed);
   dBodySetAngularVel(impl_->bodies[tube], 0, 0, 0);
+}
+
+void RigidWorld::remove_pulled() {
+  impl_->remove(impl_->pulled.value());
+  impl_->pulled.reset();
 }
 
 double RigidWorld::pulling_force() const {

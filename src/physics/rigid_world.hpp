@@ -13,6 +13,7 @@ class RigidWorld {
  public:
   RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin, const PhysicsOptions& options);
   ~RigidWorld();
+  RigidWorld(RigidWorld&&) noexcept;
   RigidWorld(const RigidWorld&) = delete;
   RigidWorld& operator=(const RigidWorld&) = delete;
 
@@ -24,6 +25,8 @@ class RigidWorld {
   bool has_guards() const;
   /// Holds a tube from now on, without turning, and moves it straight up (m/s). It passes through the bin.
   void pull(std::size_t tube, double speed);
+  /// Takes the pulled tube away; the indices of those after it are one less. The others keep their forces.
+  void remove_pulled();
   /// N, upward, that held the pulled tube over the last step: its weight and what its contacts weigh on it.
   double pulling_force() const;
   /// Whether a tube touched, or nearly, another one in the last step.

@@ -25,10 +25,14 @@ DropResult failed(DropFailure failure, std::string detail, DropFigures figures =
 /// Tubes that come to rest, while they do.
 class Settling {
  public:
-  Settling(const std::vector<scene::PlacedTube>& from, const scene::Bin& bin, const PhysicsOptions& options,
-           Random& random)
-      : bin_(bin), options_(options), random_(random), world_(from, bin, options), proof_(options) {
-    const double top = top_of(from);
+  Settling(RigidWorld world, double slow_for, const scene::Bin& bin, const PhysicsOptions& options, Random& random)
+      : bin_(bin),
+        options_(options),
+        random_(random),
+        world_(std::move(world)),
+        proof_(options),
+        last_fast_(-slow_for) {
+    const double top = top_of(world_.tubes());
     if (options.spill == Spill::guard) world_.raise_guards(top);
     wait_for_a_fall_from(top);
   }
@@ -108,9 +112,9 @@ DropResult judge(const RigidWorld& world, const scene::Bin& bin, const PhysicsOp
 
 }  // namespace
 
-DropResult settle(const std::vector<scene::PlacedTube>& from, const scene::Bin& bin, const PhysicsOptions& options,
+DropResult settle(RigidWorld world, double slow_for, const scene::Bin& bin, const PhysicsOptions& options,
                   Random& random) {
-  Settling settling(from, bin, options, random);
+  Settling settling(std::move(world), slow_for, bin, options, random);
   switch (const DropFailure failure = settling.settle()) {
     case DropFailure::none:
       return judge(settling.world(), bin, options, settling.figures());

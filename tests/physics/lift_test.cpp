@@ -49,6 +49,24 @@ TEST(Lift, WhatLiesAcrossIsDraggedAndWeighsOnIt) {
   EXPECT_TRUE(lift(pile, 2).dragged.empty()) << "the upper one is free";
 }
 
+TEST(Lift, TheOthersKeepTheirOrderAndWhatTheyBear) {
+  const std::vector<scene::PlacedTube> pile = {
+      tube_between({-0.15, -0.1, kTubeRadius}, {0.15, -0.1, kTubeRadius}),
+      tube_between({-0.15, 0.1, kTubeRadius}, {0.15, 0.1, kTubeRadius}),
+      tube_between({0.0, -0.15, 3.0 * kTubeRadius}, {0.0, 0.15, 3.0 * kTubeRadius}),
+      tube_between({0.2, -0.15, kTubeRadius}, {0.2, 0.15, kTubeRadius})};
+  const LiftResult result = lift(pile, 1);
+  ASSERT_EQ(result.rest.failure, DropFailure::none) << result.rest.detail;
+  ASSERT_EQ(result.rest.tubes.size(), 3u);
+  const auto moved = [&](std::size_t before, std::size_t after) {
+    return largest_movement(nodes_in_world({pile[before]}), nodes_in_world({result.rest.tubes[after]}));
+  };
+  EXPECT_LT(moved(0, 0), 0.01) << "one end of the upper tube still lies on it";
+  EXPECT_GT(moved(2, 1), kTubeRadius) << "the other end fell to the floor";
+  EXPECT_LT(moved(3, 2), 0.0005);
+  for (const scene::Contact& contact : result.rest.contacts) EXPECT_LE(contact.label_b, 3u);
+}
+
 TEST(Lift, APileIsEmptiedOneByOneAndEachRestIsAPile) {
   Random random(31);
   const PhysicsOptions options;
