@@ -1,10 +1,11 @@
-"""How many clouds a second are loaded of packs in either PCD encoding and of exported NPZ files, as a Markdown table.
+"""What it costs to load clouds from packs in either PCD encoding and from exported NPZ files, as a Markdown table.
 
   loading_table.py BUILD [--tubes 10] [--cases 60] [--rounds 5] [--seed 1] [--folder FOLDER]
 
 Makes the same data set in either encoding, packed, by BUILD/bin/generate_dataset, and NPZ of it by export_dataset. One process
-loads all clouds, in turn, as tubebin.Dataset does (the programs' reader) and as np.load does: from memory, where the
-system has read the files before, and from FOLDER's disk, where it was told to forget them. Needs tubebin, and numpy.
+loads all clouds, in turn, with tubebin.Dataset, which has the programs' reader, or np.load: first from FOLDER's disk, as the
+system was told to forget the files, which takes wall-clock time, then from memory, which takes the processor's. Medians of the
+rounds. Needs tubebin and numpy.
 """
 
 import argparse
@@ -50,10 +51,10 @@ def forget(folder):
                 os.posix_fadvise(file.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
 
 
-def clouds_per_second(load, folder):
-    start = time.perf_counter()
+def milliseconds(clock, load, folder):
+    start = clock()
     count = sum(1 for _ in load(folder))
-    return count / (time.perf_counter() - start)
+    return 1e3 * (clock() - start) / count
 
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -69,13 +70,14 @@ with tempfile.TemporaryDirectory(dir=arguments.folder) as name:
     for encoding in ("pcd_binary", "pcd_compressed"):
         make(arguments, work, encoding)
     run(arguments.build, "export_dataset", work / "pcd_binary", "--format", "npz", "--output", work / "npz")
-    warm, cold = {kind: [] for kind in loaders}, {kind: [] for kind in loaders}
+    memory, disk = {kind: [] for kind in loaders}, {kind: [] for kind in loaders}
     for _ in range(arguments.rounds):
         for kind, load in loaders.items():
             forget(work / kind)
-            cold[kind].append(clouds_per_second(load, work / kind))
-            warm[kind].append(clouds_per_second(load, work / kind))
-    print("| clouds | MB a scene | clouds a second, from memory | from the disk |\n| --- | ---: | ---: | ---: |")
+            disk[kind].append(milliseconds(time.perf_counter, load, work / kind))
+            memory[kind].append(milliseconds(time.process_time, load, work / kind))
+    print("| clouds | MB a scene | from memory, CPU ms a cloud | from the disk, ms a cloud |\n| --- | ---: | ---: | ---: |")
     for kind in loaders:
-        megabytes = sum(path.stat().st_size for path in (work / kind).rglob("*") if path.is_file()) / 1e6 / arguments.cases
-        print(f"| `{kind}` | {megabytes:.2f} | {statistics.median(warm[kind]):.0f} | {statistics.median(cold[kind]):.0f} |")
+        size = sum(path.stat().st_size for path in (work / kind).rglob("*") if path.is_file()) / 1e6 / arguments.cases
+        times = f"{statistics.median(memory[kind]):.1f} | {statistics.median(disk[kind]):.1f}"
+        print(f"| `{kind}` | {size:.2f} | {times} |")

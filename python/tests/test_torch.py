@@ -67,6 +67,8 @@ def test_a_scene_that_no_attempt_gives_is_the_loaders_error() -> None:
 def test_wrong_arguments_are_named_before_a_worker_starts() -> None:
     with pytest.raises(tubebin.ConfigError, match="batch_size: '0' is not valid; valid: whole numbers from 1"):
         tubebin.torch.Scenes({}, batch_size=0)
+    with pytest.raises(tubebin.ConfigError, match="tubes: has no number; valid: one or several, from 1"):
+        tubebin.torch.Scenes({}, tubes=[])
     with pytest.raises(tubebin.ConfigError, match=r"tube\.radius"):
         tubebin.torch.Scenes({"tube": {"radius": -1}})
     with pytest.raises(tubebin.ConfigError, match="nowhere.yaml: cannot be read"):

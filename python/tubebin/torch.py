@@ -73,8 +73,10 @@ class Scenes(data.IterableDataset[Any]):
         core_config(config)  # raises what a worker would
         self._config = config
         self._seed = operator.index(seed)
-        self._tubes = np.atleast_1d(np.asarray(tubes)).tolist()
-        self._end = math.inf if cases is None else operator.index(cases) * len(self._tubes)
+        self._tubes = [_at_least(1, count, "tubes") for count in np.atleast_1d(tubes).tolist()]
+        if not self._tubes:
+            raise _core.ConfigError("tubes: has no number; valid: one or several, from 1")
+        self._end = math.inf if cases is None else _at_least(1, cases, "cases") * len(self._tubes)
         self._start = _at_least(0, start, "start")
         self._batch_size = _at_least(1, batch_size, "batch_size")
         self._transform = transform
