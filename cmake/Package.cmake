@@ -21,7 +21,7 @@ set(CPACK_COMPONENT_TUBEBIN_DESCRIPTION "Programs that generate, scan, model and
 set(CPACK_DEBIAN_LIBTUBEBIN-DEV_PACKAGE_NAME libtubebin-dev)
 set(CPACK_DEBIAN_LIBTUBEBIN-DEV_PACKAGE_SECTION libdevel)
 string(JOIN ", " CPACK_DEBIAN_LIBTUBEBIN-DEV_PACKAGE_DEPENDS
-       libode-dev libembree-dev libpcl-dev libpng-dev zlib1g-dev liblzf-dev libeigen3-dev libyaml-cpp-dev
+       libode-dev libembree-dev libpng-dev zlib1g-dev liblzf-dev libeigen3-dev libyaml-cpp-dev
        nlohmann-json3-dev libfmt-dev libxxhash-dev libarchive-dev libsleef-dev pkg-config)
 set(CPACK_COMPONENT_LIBTUBEBIN-DEV_DESCRIPTION "Libraries, headers and CMake package of tubebin")
 include(CPack)

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 
 step() { printf '\n== %s\n' "$*"; }
 
-step "1 of 4: install what is missing. Nothing to do, or, on a bare machine, minutes by the network: 630 MB."
+step "1 of 4: install what is missing. Nothing to do, or, on a bare machine, minutes by the network: 180 MB."
 scripts/install_dependencies.sh
 
 step "2 of 4: build four programs: three minutes the first time."

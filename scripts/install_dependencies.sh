@@ -1,17 +1,21 @@
 #!/usr/bin/env bash
-# Installs what building and testing needs and what is missing, with apt (Debian 12, Ubuntu 24.04).
-# Usage: scripts/install_dependencies.sh [PACKAGE...]   (further packages to install)
+# Installs what building needs and what is missing, with apt (Debian 12, Ubuntu 24.04).
+# Usage: scripts/install_dependencies.sh [--tests] [PACKAGE...]   (--tests: also what building the tests needs; further packages)
 set -euo pipefail
 
-# Two thirds are what libpcl-dev asks for: VTK's headers, with a JDK, Qt and MPI, which nothing here uses. Debian has PCL's
-# headers in no other package.
 packages=(
   g++ cmake ninja-build ccache pkg-config
-  libode-dev libembree-dev libpcl-dev libosmesa6-dev libpng-dev zlib1g-dev liblzf-dev
+  libode-dev libembree-dev libosmesa6-dev libpng-dev zlib1g-dev liblzf-dev
   libeigen3-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev libfmt-dev libxxhash-dev libarchive-dev libsleef-dev
-  libgtest-dev libgmock-dev libbenchmark-dev help2man doxygen
-  "$@"
+  help2man
 )
+if [ "${1:-}" = --tests ]; then
+  shift
+  # PCL is compared with. Most of what is installed is what libpcl-dev asks for: VTK's headers, with a JDK, Qt and MPI,
+  # which nothing here uses. Debian has PCL's headers in no other package.
+  packages+=(libgtest-dev libgmock-dev libbenchmark-dev doxygen libpcl-dev)
+fi
+packages+=("$@")
 
 command -v apt-get > /dev/null || { echo "$0: needs apt (Debian 12 or Ubuntu 24.04); install by other means: ${packages[*]}" >&2; exit 1; }
 

@@ -37,7 +37,7 @@ check() {  # JOB BENCH_JOBS BUILD
 }
 
 update() {
-  scripts/install_dependencies.sh valgrind
+  scripts/install_dependencies.sh --tests valgrind
   cmake --preset release > /dev/null
   cmake --build --preset release --target bench_jobs
   local build

@@ -24,7 +24,7 @@ check_skips() {
     { echo "Tests skipped although the Python environment $environment is there." >&2; return 1; }
 }
 
-scripts/install_dependencies.sh
+scripts/install_dependencies.sh --tests
 environment=$(scripts/python_environment.sh) ||
   { environment=; echo "No Python packages to be had: tests that compare with them skip." >&2; }
 export PATH="${environment:+$environment/bin:}$PATH"
