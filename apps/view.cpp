@@ -14,7 +14,7 @@ Examples:
   view scan.ply
       a cloud, coloured by its labels, or by height where it has none
   view dataset/A10/007
-      a scene of a data set with its tubes' true centrelines
+      a scene of a data set, packed or not, with its tubes' true centrelines
   view one
       what `model_tubes CLOUD --output one` found: truth, found and errors at a switch
   view results --html worst.html
@@ -31,7 +31,8 @@ int main(int argc, char** argv) {
   CLI::App app("Shows a point cloud, a scene or found tubes in 3D: writes a page for the browser.");
   app.footer(kExamples);
   app.set_version_flag("--version", "tubebin " TUBEBIN_VERSION);
-  app.add_option("FILE|SCENE|RESULTS", input, "A cloud (PCD or PLY), a scene's folder, or a folder of model_tubes")
+  app.add_option("FILE|SCENE|RESULTS", input,
+                 "A cloud (PCD or PLY), a scene of a data set or of a pack, or a folder of model_tubes")
       ->required();
   app.add_option("--html", html, "The page")->type_name("FILE")->capture_default_str();
   return run_program("view", app, argc, argv, [&] {

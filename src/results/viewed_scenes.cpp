@@ -1,5 +1,7 @@
 #include "tubebin/results/viewed_scenes.hpp"
 
+#include <filesystem>
+
 #include "results/result_files.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
@@ -14,14 +16,32 @@
 namespace tubebin::results {
 namespace {
 
-evaluation::LabelledPoints cloud_points(const std::string& path) {
-  const CloudToModel input = read_cloud_to_model(path);
+namespace fs = std::filesystem;
+
+evaluation::LabelledPoints cloud_points(const CloudToModel& input) {
   evaluation::LabelledPoints points;
   points.points = input.cloud.points;
   points.truth = input.cloud.labels;
   points.scanner.position = input.cloud.world_from_sensor.translation();
   if (input.scene) points.true_tubes = evaluation::tube_lines(input.scene->scene);
   return points;
+}
+
+bool is_pack(const std::string& path) { return path.ends_with(".tar") && is_regular_file(path); }
+
+/// The scene that DATASET/A10/007 or PACK.tar/A10/007 names, where it is packed.
+std::optional<CloudToModel> packed_scene(const std::string& path) {
+  fs::path scene;
+  for (fs::path dataset = path; !dataset.empty() && dataset.has_relative_path(); dataset = dataset.parent_path()) {
+    scene = scene.empty() ? dataset.filename() : dataset.filename() / scene;
+    const std::string holder = dataset.has_parent_path() ? dataset.parent_path().string() : ".";
+    if (!is_pack(holder) && !is_folder(scene::packs_folder(holder))) continue;
+    const scene::DatasetFiles files(holder);
+    const std::string cloud = files.cloud_of(scene.string());
+    if (cloud.empty()) throw_io_error("{}: the data set {} has no scene {}", path, holder, scene.string());
+    return read_cloud_to_model(files, {scene.string(), cloud});
+  }
+  return std::nullopt;
 }
 
 /// With the ground truth where filtered.pcd has it.
@@ -62,14 +82,20 @@ std::vector<evaluation::SceneView> worst_scenes(const std::string& folder) {
 
 }  // namespace
 
-std::vector<evaluation::SceneView> viewed_scenes(const std::string& path) {
-  if (!is_folder(path)) return {{path, cloud_points(path)}};
+std::vector<evaluation::SceneView> viewed_scenes(const std::string& named) {
+  const std::string path = named.substr(0, named.find_last_not_of('/') + 1);
+  if (!path_exists(path))
+    if (const auto scene = packed_scene(path)) return {{path, cloud_points(*scene)}};
+  if (!is_folder(path) && !is_pack(path)) return {{path, cloud_points(read_cloud_to_model(path))}};
   for (const char* file : {"/cloud.pcd", "/cloud.ply"})
-    if (path_exists(path + file)) return {{path, cloud_points(path + file)}};
+    if (path_exists(path + file)) return {{path, cloud_points(read_cloud_to_model(path + file))}};
   if (path_exists(path + "/model.json")) return {{path, model_points(path)}};
   if (path_exists(path + "/index.json")) return worst_scenes(path);
+  if (const auto scenes = scene::DatasetFiles(path).scenes(); !scenes.empty())
+    throw_io_error("{0}: is a data set of {1} scenes; name one: {0}/{2}", path, scenes.size(), scenes.front());
   throw_io_error(
-      "{}: holds nothing to show; valid: a cloud file, a scene's folder (DATASET/A10/001), or what model_tubes wrote",
+      "{}: holds nothing to show; valid: a cloud file, a scene of a data set (DATASET/A10/001, PACK.tar/A10/001), or "
+      "what model_tubes wrote",
       path);
 }
 

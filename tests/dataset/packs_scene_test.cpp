@@ -1,4 +1,6 @@
 // Shards of a data set whose scenes are packed into tar files.
+#include <regex>
+
 #include "dataset/shards.hpp"
 #include "tubebin/jobs/folder_lock.hpp"
 #include "tubebin/scene/dataset_files.hpp"
@@ -94,6 +96,25 @@ TEST_F(Packs, OfOneSharedFolderAreMerged) {
   EXPECT_EQ(all_files(data_), expected_);
   EXPECT_THAT(generate(data_).error, HasSubstr("8 were there before"));
   EXPECT_EQ(std::distance(fs::directory_iterator(data_ + "/packs"), {}), 3);
+}
+
+TEST_F(Packs, TheirScenesAreViewedAsLooseOnes) {
+  ASSERT_EQ(generate(data_, {"--pack"}).exit_code, 0);
+  const std::string scene = scene::DatasetFiles(data_).scenes().front(), html = folder_ / "view.html";
+  const auto page_of = [&](const std::string& path) {
+    const ProgramResult result = run_program("view", {path, "--html", html});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    const std::string page = read_text(html);
+    return std::regex_replace(page, std::regex(path), "PATH");
+  };
+  const std::string pack = data_ + "/packs/00001-of-00001.tar", loose = page_of(one_machine_ + "/" + scene);
+  EXPECT_EQ(page_of(data_ + "/" + scene), loose);
+  EXPECT_EQ(page_of(pack + "/" + scene), loose);
+
+  const auto error_of = [&](const std::string& path) { return run_program("view", {path, "--html", html}).error; };
+  EXPECT_THAT(error_of(data_ + "/Q1/999"), HasSubstr("the data set " + data_ + " has no scene Q1/999"));
+  EXPECT_THAT(error_of(pack), HasSubstr("name one: " + pack + "/" + scene));
+  EXPECT_THAT(error_of(data_ + "/"), HasSubstr("name one: " + data_ + "/" + scene));
 }
 
 TEST_F(Packs, ADamagedSceneIsFoundAndRepaired) {

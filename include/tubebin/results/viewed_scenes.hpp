@@ -8,8 +8,8 @@
 
 namespace tubebin::results {
 
-/// `path` is a cloud file, which may have scene.json beside it; a scene's folder; what model_tubes wrote for one cloud; or
-/// a results folder, whose worst scenes are shown. Throws IoError naming the file, or what `path` would have to hold.
+/// `path` is a cloud file, which may have scene.json beside it; a scene of a data set, DATASET/A10/007, loose or packed, or
+/// of one pack, PACK.tar/A10/007; what model_tubes wrote for one cloud; or a results folder, whose worst scenes are shown. Throws IoError naming the file, or what `path` would have to hold.
 std::vector<evaluation::SceneView> viewed_scenes(const std::string& path);
 
 }  // namespace tubebin::results
