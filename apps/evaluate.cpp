@@ -212,8 +212,7 @@ int evaluate_folders(const Arguments& arguments) {
 
 int run(const Arguments& arguments) {
   if (!arguments.filtered.empty()) return evaluate_pair(arguments);
-  if (arguments.folders.empty())
-    throw_config_error("a results folder, or --filtered and --labeled, is needed; --help shows examples");
+  if (arguments.folders.empty()) throw_usage_error("a results folder, or --filtered and --labeled, is needed");
   return evaluate_folders(arguments);
 }
 

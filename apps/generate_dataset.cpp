@@ -112,7 +112,7 @@ KeyPlaces whole_file(const std::string& name) {
 
 dataset::DatasetConfig resolve_config(const Arguments& arguments) {
   if (arguments.config.empty() || arguments.output.empty())
-    throw_config_error("CONFIG.yaml and --output DIR are needed; --help shows examples");
+    throw_usage_error("CONFIG.yaml and --output DIR are needed");
   dataset::DatasetConfig config = dataset::load_config(arguments.config);
   if (!arguments.tubes.empty()) config.tubes = dataset::parse_tube_counts(arguments.tubes);
   if (arguments.cases) config.cases = *arguments.cases;

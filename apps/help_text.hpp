@@ -18,6 +18,16 @@ class HelpInWords : public CLI::Formatter {
  public:
   HelpInWords() { label("Positionals", "Arguments"); }
 
+  /// With the options that are needed.
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    std::string usage = Formatter::make_usage(app, name);
+    usage.erase(usage.find_last_not_of('\n') + 1);
+    for (const CLI::Option* option : app->get_options())
+      if (option->get_required() && !option->get_positional())
+        usage += fmt::format(" {} {}", option->get_name(), value_of(*option));
+    return usage + "\n";
+  }
+
  private:
   static constexpr std::size_t kColumn = 30;  // where CLI11 begins descriptions
   static constexpr std::size_t kLineEnd = 110;

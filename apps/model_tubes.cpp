@@ -261,7 +261,7 @@ int resume(const Arguments& arguments) {
 int run(const Arguments& arguments) {
   if (!arguments.resume.empty()) return resume(arguments);
   if (arguments.input.empty() || arguments.output.empty())
-    throw_config_error("CLOUD_OR_DATASET and --output DIR are needed; --help shows examples");
+    throw_usage_error("CLOUD_OR_DATASET and --output DIR are needed");
   if (!is_dataset(arguments.input)) return model_one(arguments);
   const results::ModelConfig config = resolve_config(arguments);
   return model_many(batch_options(arguments, config), config, arguments);

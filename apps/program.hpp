@@ -60,6 +60,11 @@ inline void require_utf8(int argc, char** argv) {
       throw_config_error("argument {}: '{}' is no UTF-8 text; rename the path", i, excerpt(argv[i]));
 }
 
+/// For arguments that are understood one by one: the usage is told with the problem.
+[[noreturn]] inline void throw_usage_error(const char* problem) {
+  throw CLI::ParseError(problem, CLI::ExitCodes::RequiredError);
+}
+
 /// `run` returns the exit code of a command line that was understood.
 template <typename Run>
 int run_program(const char* name, CLI::App& app, int argc, char** argv, const Run& run) {

@@ -64,11 +64,18 @@ TEST(CommandLine, HelpIsInWords) {
 }
 
 TEST(CommandLine, AWrongCallIsToldShortly) {
-  const ProgramResult result = Program({program_path("export_dataset"), "--fromat", "bop"}).wait();
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 3) << result.error;
-  EXPECT_THAT(result.error, AllOf(::testing::StartsWith("export_dataset: "), HasSubstr("\nUsage: export_dataset "),
-                                  HasSubstr("\nSee export_dataset --help.\n")));
+  for (const std::string program :
+       {"generate_dataset", "model_tubes", "calibrate_modeler", "export_dataset", "evaluate", "view"})
+    for (const char* argument : {"", "--nonsense"}) {
+      std::vector<std::string> call = {program_path(program)};
+      if (*argument != 0) call.emplace_back(argument);
+      const ProgramResult result = Program(call).wait();
+      EXPECT_EQ(result.exit_code, 2);
+      EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 3) << result.error;
+      EXPECT_THAT(result.error, AllOf(::testing::StartsWith(program + ": "), HasSubstr("\nUsage: " + program + " "),
+                                      HasSubstr("\nSee " + program + " --help.\n")));
+    }
+  EXPECT_THAT(Program({program_path("export_dataset")}).wait().error, HasSubstr("DATASET --format "));
 }
 
 }  // namespace
