@@ -16,6 +16,11 @@ set(CPACK_DEBIAN_TUBEBIN_PACKAGE_NAME tubebin)
 set(CPACK_DEBIAN_TUBEBIN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TUBEBIN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_TUBEBIN_PACKAGE_RECOMMENDS "libosmesa6")  # previews load it where it is
+# Debian's editors have a program `view`, too, which alternatives choose. Ours has a name of its own beside it there, and is
+# `view` where no other is: its priority is lower than theirs.
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian/rename_view.cmake)
+set(CPACK_DEBIAN_TUBEBIN_PACKAGE_CONTROL_EXTRA
+    ${PROJECT_SOURCE_DIR}/cmake/debian/postinst ${PROJECT_SOURCE_DIR}/cmake/debian/prerm)
 set(CPACK_COMPONENT_TUBEBIN_DESCRIPTION "Programs that generate, scan, model and evaluate bins of entangled tubes")
 
 set(CPACK_DEBIAN_LIBTUBEBIN-DEV_PACKAGE_NAME libtubebin-dev)

@@ -36,6 +36,9 @@ mount -t proc proc "$work/root/proc"
 cp "$work"/packages/tubebin_*.deb "$work/root/tmp/"
 
 in_root() { chroot "$work/root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive "$@"; }
+# As Debian's vim does it.
+in_root sh -c 'printf "#!/bin/sh\necho editor\n" > /usr/bin/editor-view && chmod +x /usr/bin/editor-view &&
+               update-alternatives --install /usr/bin/view view /usr/bin/editor-view 15' > /dev/null
 in_root sh -c 'apt-get update && apt-get install -y --no-install-recommends /tmp/tubebin_*.deb' > "$work/apt.log" 2>&1 ||
   { tail "$work/apt.log" >&2; exit 1; }
 
@@ -46,3 +49,13 @@ model_tubes data/A5/001/cloud.pcd --output one
 evaluate --filtered one/filtered.pcd --labeled one/labeled.pcd' | tee "$work/log"
 awk '/^micro-recall/ && $2 > 0.95 && $2 <= 1 {good = 1} END {exit !good}' "$work/log" ||
   { echo "FAILED: the tubes were not found" >&2; exit 1; }
+
+views() {  # EXPECTED PROGRAM: what the program prints begins so
+  [[ $(in_root "$2" --version) == "$1"* ]] || { echo "FAILED: $2 is not the $1's" >&2; exit 1; }
+}
+views editor view
+views tubebin tubebin-view
+in_root update-alternatives --remove view /usr/bin/editor-view > /dev/null
+views tubebin view
+in_root apt-get remove -y tubebin > /dev/null 2>&1
+[ ! -L "$work/root/usr/bin/view" ] || { echo "FAILED: view points to what is gone" >&2; exit 1; }

@@ -1,0 +1,12 @@
+# cpack runs this on the files that it packs: what is called `view` is called `tubebin-view`.
+file(GLOB_RECURSE files ${CPACK_TEMPORARY_DIRECTORY}/*/view ${CPACK_TEMPORARY_DIRECTORY}/*/view.1)
+foreach(file IN LISTS files)
+  cmake_path(GET file FILENAME name)
+  cmake_path(GET file PARENT_PATH folder)
+  file(RENAME ${file} ${folder}/tubebin-${name})
+  if(folder MATCHES "completions$")
+    file(READ ${folder}/tubebin-${name} text)
+    string(REPLACE "-F _view view" "-F _view tubebin-view" text "${text}")
+    file(WRITE ${folder}/tubebin-${name} "${text}")
+  endif()
+endforeach()
