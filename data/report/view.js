@@ -195,10 +195,16 @@
       draw();
     };
 
-    const reset = () => {
+    const fromCenter = (i) => data.size.map((size, axis) => size * (places[3 * i + axis] / 65535 - 0.5));
+    const reset = () => {  // as near as all points are in the picture, with a margin
+      camera = { around: -1.2, above: 0.85, distance: reach, target: [0, 0, 0] };
+      const { right, upward, back } = look();
       const aspect = canvas.clientWidth / canvas.clientHeight;
-      const distance = 0.7 * reach / Math.sin(FIELD_OF_VIEW / 2) / Math.min(1, 0.75 * aspect);
-      camera = { around: -1.2, above: 0.85, distance, target: [0, 0, 0] };
+      for (let i = 0; i < data.count; ++i) {
+        const p = fromCenter(i);
+        const off = Math.max(Math.abs(dot(p, right)) / aspect, Math.abs(dot(p, upward)));
+        camera.distance = Math.max(camera.distance, dot(p, back) + 1.05 * f * off);
+      }
     };
 
     const up = data.up;
@@ -218,7 +224,7 @@
       const project = [0, 1, 2].flatMap((i) => rows.map((row) => row[i]));
       project.push(...rows.map((row) => -dot(row, eye)));
       project[14] += 2 * range[0] * range[1] / (range[0] - range[1]);
-      return { project, eye, right, upward, range };
+      return { project, eye, right, upward, back, range };
     };
 
     const draw = () => {

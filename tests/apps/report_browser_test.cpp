@@ -96,6 +96,8 @@ TEST_F(ReportInBrowser, FitsAPhoneAndShowsAPictureEarly) {
   EXPECT_LT(evaluate_in_frame(1280, script)["picture"], 1000);
 }
 
+TEST_F(ReportInBrowser, IsAccessible) { expect_accessible("report.html"); }
+
 TEST_F(ReportInBrowser, SortsAndFiltersScenes) {
   const nlohmann::json seen = evaluate_in_frame(1280, R"js(
   const table = page.querySelector(".scenes table");

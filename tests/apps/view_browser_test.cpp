@@ -88,6 +88,19 @@ TEST_F(ViewInBrowser, TurnsAndTurnsBack) {
   EXPECT_EQ(seen["back"], 0);
 }
 
+TEST_F(ViewInBrowser, FitsAPhoneAndIsAccessible) {
+  write_model("right", 1.0F);
+  const nlohmann::json seen = evaluate_in_frame("right.html", 390, R"js(
+  result.width = page.documentElement.scrollWidth;
+  result.controls = [...page.querySelectorAll("input, select, button, canvas")].map((control) => {
+    control.focus();
+    return page.activeElement === control && parseFloat(event.target.contentWindow.getComputedStyle(control).outlineWidth);
+  });)js");
+  EXPECT_LE(seen["width"], 390);
+  EXPECT_EQ(seen["controls"], nlohmann::json(std::vector<int>(7, 3)));  // what has the focus has a frame of 3 pixels
+  expect_accessible("right.html");
+}
+
 TEST_F(ViewInBrowser, AFoundTubeHasTheColorOfTheTrueOneThatItMatches) {
   write_model("right", 1.0F);
   const nlohmann::json seen = evaluate_in_frame("right.html", 400, std::string(kTools) + R"js(

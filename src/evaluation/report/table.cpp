@@ -151,9 +151,10 @@ std::string format_html(const Table& table) {
   std::string text = fmt::format(
       "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"{0}\"><table><caption>{0}</caption><thead><tr>",
       escape_html(table.title));
-  for (std::size_t i = 0; i < table.headers.size(); ++i)
-    text += fmt::format("<th scope=\"col\"{}>{}</th>", numeric[i] ? " class=\"number\"" : "",
-                        escape_html(table.headers[i]));
+  for (std::size_t i = 0; i < table.headers.size(); ++i)  // a header without words would be read out as one
+    text += table.headers[i].empty() ? "<td></td>"
+                                     : fmt::format("<th scope=\"col\"{}>{}</th>", numeric[i] ? " class=\"number\"" : "",
+                                                   escape_html(table.headers[i]));
   text += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
     text += "<tr>";

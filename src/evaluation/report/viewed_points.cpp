@@ -43,10 +43,12 @@ ViewedPoints choose_points(const LabelledPoints& points) {
   append_evenly(others, shown_others, viewed.chosen);
   std::sort(viewed.chosen.begin(), viewed.chosen.end());
   for (const std::size_t i : viewed.chosen) viewed.box.extend(points.points[i].cast<double>());
-  viewed.note = viewed.chosen.size() == on_tubes.size() + others.size()
-                    ? fmt::format("All {} points.", viewed.chosen.size())
-                    : fmt::format("Evenly chosen: {} of {} points on tubes, {} of {} others.", shown_on_tubes,
-                                  on_tubes.size(), shown_others, others.size());
+  const std::size_t all = on_tubes.size() + others.size(), shown = viewed.chosen.size();
+  if (shown == all) viewed.note = fmt::format("All {} points.", all);
+  else if (others.empty()) viewed.note = fmt::format("Evenly chosen: {} of {} points.", shown, all);
+  else
+    viewed.note = fmt::format("Evenly chosen: {} of {} points on tubes, {} of {} others.", shown_on_tubes,
+                              on_tubes.size(), shown_others, others.size());
   return viewed;
 }
 
