@@ -108,9 +108,10 @@ void describe(Fields& fields, DatasetConfig& config) {
   fields.integer("cases", config.cases, {1, 1000000}, "", "scenes for each number of tubes");
   fields.integer("attempts_max", config.attempts_max, {1, 100000}, "",
                  "attempts, each with a seed of its own, until a scene is given up");
-  fields.number("attempt_time_limit", config.attempt_time_limit, {0.1, 86400.0}, "s",
-                "wall-clock time after which an attempt counts as failed; far above what any attempt needs, since "
-                "hitting it depends on the machine");
+  fields.number(
+      "attempt_time_limit", config.attempt_time_limit, {0.1, 86400.0}, "s",
+      "wall-clock time after which an attempt counts as failed, and as much again for each of sequence.lifts; far "
+      "above what any attempt needs, since hitting it depends on the machine");
   fields.list("kinds", config.kinds, "several kinds of tubes at once, instead of `tube`");
   if (config.kinds.empty())
     fields.group("tube", "shape of the tubes (paper, Algorithms 1 to 3)",

@@ -134,7 +134,7 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
        .noun = piles.size() == scenes.size() ? "scenes" : "piles",
        .pool = {.workers = jobs,
                 .attempts_max = folder.config().attempts_max,
-                .attempt_time_limit = folder.config().attempt_time_limit},
+                .attempt_time_limit = folder.config().attempt_time_limit * (1 + folder.config().sequence.lifts)},
        .progress = progress_style,
        .is_done = [&](std::size_t job) { return complete_scenes(piles[job]) == piles[job].end - piles[job].begin; },
        .work =

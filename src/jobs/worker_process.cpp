@@ -13,27 +13,32 @@
 #include <new>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "tubebin/core/error.hpp"
 
 namespace tubebin::jobs {
 namespace {
 
-// Longest text of an answer: a message must fit into the socket's buffer.
+// Longest text of a message, which must fit into the socket's buffer.
 constexpr std::size_t kLongestText = 48 * 1024;
+// In the place of the kind: a part of a result, of which more follows.
+constexpr char kPart = 'p';
 // Divides a failure's reason from its detail.
 constexpr char kDivider = '\n';
 
 /// A message is the kind of the answer, one byte, then its text.
-void send_answer(int socket, WorkerAnswer::Kind kind, std::string text) {
-  if (text.size() > kLongestText) {  // a message may lose its end, a result may not
-    if (kind == WorkerAnswer::Kind::succeeded)
-      throw std::length_error("the attempt's result is too long to be handed over");
-    text.resize(kLongestText);
-  }
-  text.insert(text.begin(), static_cast<char>(kind));
-  while (send(socket, text.data(), text.size(), MSG_NOSIGNAL) < 0)
+void send_message(int socket, char kind, const std::string& text) {
+  const std::string message = kind + text;
+  while (send(socket, message.data(), message.size(), MSG_NOSIGNAL) < 0)
     if (errno != EINTR) _exit(1);  // the parent is gone
+}
+
+/// A failure's text may lose its end, a result may not.
+void send_answer(int socket, WorkerAnswer::Kind kind, std::string text) {
+  for (; kind == WorkerAnswer::Kind::succeeded && text.size() > kLongestText; text.erase(0, kLongestText))
+    send_message(socket, kPart, text.substr(0, kLongestText));
+  send_message(socket, static_cast<char>(kind), text.substr(0, kLongestText));
 }
 
 /// Clouds of megabytes come and go with every job. glibc would give their pages back each time, and clearing new ones
@@ -139,15 +144,21 @@ bool WorkerProcess::start(const Attempt& attempt) {
 
 WorkerAnswer WorkerProcess::answer() {
   std::vector<char> buffer(kLongestText + 1);
-  ssize_t size = 0;
-  do size = recv(socket_.get(), buffer.data(), buffer.size(), 0);
-  while (size < 0 && errno == EINTR);
-  if (size <= 0) return {};
-  const auto kind = static_cast<WorkerAnswer::Kind>(buffer[0]);
-  const std::string text(buffer.data() + 1, static_cast<std::size_t>(size) - 1);
-  if (kind != WorkerAnswer::Kind::failed) return {kind, text, ""};
-  const std::size_t divider = std::min(text.find(kDivider), text.size());
-  return {kind, text.substr(0, divider), text.substr(std::min(divider + 1, text.size()))};
+  while (true) {
+    const ssize_t size = recv(socket_.get(), buffer.data(), buffer.size(), 0);
+    if (size < 0 && errno == EINTR) continue;
+    if (size <= 0) return {};
+    const std::string text(buffer.data() + 1, static_cast<std::size_t>(size) - 1);
+    if (buffer[0] == kPart) {
+      begun_result_ += text;
+      continue;
+    }
+    const auto kind = static_cast<WorkerAnswer::Kind>(buffer[0]);
+    if (kind == WorkerAnswer::Kind::succeeded) return {kind, std::exchange(begun_result_, {}) + text, ""};
+    if (kind != WorkerAnswer::Kind::failed) return {kind, text, ""};
+    const std::size_t divider = std::min(text.find(kDivider), text.size());
+    return {kind, text.substr(0, divider), text.substr(std::min(divider + 1, text.size()))};
+  }
 }
 
 void WorkerProcess::kill() {

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "tubebin/core/file_descriptor.hpp"
@@ -51,6 +52,7 @@ class WorkerProcess {
  private:
   FileDescriptor socket_;
   pid_t process_ = -1;
+  std::string begun_result_;  ///< what has come of one that takes several messages
   std::optional<int> end_signal_;
 };
 
