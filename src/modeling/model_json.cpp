@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "core/json_writer.hpp"
 #include "tubebin/core/version.hpp"
@@ -19,6 +20,21 @@ double rounded_nats(double nats) { return std::round(nats * 10.0) / 10.0; }
 
 Json place(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
 
+/// As --bin-pose takes it.
+Json bin_json(const BinFound& bin) {
+  const Eigen::Matrix3d axes = bin.world_from_bin.linear();
+  const auto degrees = [](double sine, double cosine) {
+    return std::round(std::atan2(sine, cosine) * (180.0 / std::numbers::pi) * 1e4) / 1e4;
+  };
+  const Json rotation = {degrees(axes(2, 1), axes(2, 2)), degrees(-axes(2, 0), std::hypot(axes(2, 1), axes(2, 2))),
+                         degrees(axes(1, 0), axes(0, 0))};
+  return {{"position", place(bin.world_from_bin.translation())},
+          {"rotation_deg", rotation},
+          {"length", rounded(bin.length)},
+          {"width", rounded(bin.width)},
+          {"height", rounded(bin.height)}};
+}
+
 Json scene_json(const ModelingResult& result) {
   const SceneFound& found = result.found;
   Json radii = Json::array();
@@ -29,6 +45,7 @@ Json scene_json(const ModelingResult& result) {
           {"viewpoint", place(found.viewpoint)},
           {"viewpoint_is_told", found.viewpoint_is_told},
           {"flat_regions", found.flat_regions},
+          {"bin", found.bin ? bin_json(*found.bin) : Json()},
           {"radii", radii},
           {"unexplained", std::round(found.unexplained * 1e4) / 1e4},
           {"doubts", found.doubts}};

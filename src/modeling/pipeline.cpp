@@ -12,6 +12,7 @@
 #include "modeling/fitting/piece_cleaning.hpp"
 #include "modeling/fitting/tube_classes.hpp"
 #include "modeling/input/background.hpp"
+#include "modeling/input/bin_finding.hpp"
 #include "modeling/input/bin_pose.hpp"
 #include "modeling/input/grid_viewpoint.hpp"
 #include "modeling/input/normals.hpp"
@@ -212,6 +213,11 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   FilteredCloud cloud = filter(input, projection, background.foreground, options.filtering, options.seed);
   result.spacing = cloud.spacing;
   describe_scene(background, projection, options.up, result.found);
+  result.found.bin = input.bin ? std::optional(BinFound{.world_from_bin = input.world_from_bin,
+                                                        .length = input.bin->length,
+                                                        .width = input.bin->width,
+                                                        .height = input.bin->height})
+                               : find_bin(background.regions, input.points, background.foreground);
   OcclusionTest scan(input, projection, cloud.spacing * std::sqrt(options.filtering.ratio), 0.0);
   scan.add_solids(solids_of(background));
   watch.lap(result.seconds.filtering);

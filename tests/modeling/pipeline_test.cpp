@@ -267,6 +267,25 @@ TEST(Pipeline, FindsTheTubesInABinThatNobodyDescribes) {
   EXPECT_LE(static_cast<double>(false_points), 0.005 * static_cast<double>(all));
 }
 
+TEST(Pipeline, FindsTheBinThatNobodyDescribes) {
+  const scene::Scene scene = one_over_three();
+  cloud::Cloud cloud = scan::scan(scene).cloud;
+  ModelingInput input = input_of(cloud, scene.bin);
+  input.bin.reset();
+  const std::optional<BinFound> bin = model_tubes(input, known_radius()).found.bin;
+  ASSERT_TRUE(bin);
+  EXPECT_NEAR(bin->length, scene.bin.length, 0.002);
+  EXPECT_NEAR(bin->width, scene.bin.width, 0.002);
+  EXPECT_NEAR(bin->height, scene.bin.height, 0.01);  // walls from above: a pixel is a centimetre high
+  EXPECT_LT(bin->world_from_bin.translation().norm(), 0.002);
+  EXPECT_GT(std::abs(bin->world_from_bin.linear()(0, 0)), 0.9999);
+
+  for (cloud::Point& point : cloud.points)  // out of sight: a wall
+    if (point.x() > 0.25F) point.x() = std::numeric_limits<float>::quiet_NaN();
+  input.points = cloud.points;
+  EXPECT_FALSE(model_tubes(input, known_radius()).found.bin);
+}
+
 TEST(Pipeline, MakesNoTubesOfNoise) {
   Random random(9);
   std::vector<cloud::Point> points;

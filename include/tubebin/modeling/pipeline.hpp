@@ -55,6 +55,13 @@ struct StageSeconds {
   double total() const { return filtering + segmentation + fitting + joining + labeling; }
 };
 
+/// An open bin, as its inner faces show it.
+struct BinFound {
+  Pose world_from_bin = Pose::Identity();  ///< from the middle of its floor: x along the length, z up
+  double length = 0.0, width = 0.0;        ///< metres, of the inner space at the floor; length is the longer
+  double height = 0.0;                     ///< metres, of the walls above the floor
+};
+
 /// What the scene was found to be, and what looks wrong about it.
 struct SceneFound {
   Vec3 up = Vec3::UnitZ();          ///< unit
@@ -62,6 +69,7 @@ struct SceneFound {
   Vec3 viewpoint = Vec3::Zero();    ///< metres
   bool viewpoint_is_told = true;    ///< else found from the grid of an organized cloud
   std::size_t flat_regions = 0;     ///< set aside as floor, walls and other obstacles
+  std::optional<BinFound> bin;      ///< where the cloud shows one; nothing else rests on it
   double unexplained = 0.0;         ///< part of the filtered points that no tube explains
   std::vector<std::string> doubts;  ///< why the result may not be trusted, as sentences
 };
