@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "calibration/number_fields.hpp"
 #include "core/json_reader.hpp"
+#include "core/number_fields.hpp"
 #include "jobs/stop_note.hpp"
 #include "tubebin/core/file_record.hpp"
 #include "tubebin/core/version.hpp"

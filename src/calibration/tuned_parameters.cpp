@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "calibration/number_fields.hpp"
+#include "core/number_fields.hpp"
 #include "tubebin/calibration/calibration.hpp"
 #include "tubebin/core/error.hpp"
 

@@ -16,6 +16,7 @@ constexpr double kQuaternionTolerance = 1e-5;
 
 class FieldsFromJson : public Fields {
  public:
+  using Fields::vector;
   explicit FieldsFromJson(const JsonPlace& object) : object_(object) {}
 
   void number(const char* key, double& value, Limits limits, const char*, const char*) override {
@@ -186,6 +187,13 @@ Pose JsonPlace::pose() const {
   if (!other.toRotationMatrix().isApprox(matrix, kQuaternionTolerance))
     quaternion.fail("the unit quaternion [w, x, y, z] of the rotation matrix beside it");
   return pose;
+}
+
+std::map<std::string, double> JsonPlace::numbers() const {
+  if (!value_.is_object()) fail("an object of numbers");
+  std::map<std::string, double> all;
+  for (const auto& entry : value_.items()) all[entry.key()] = at(entry.key().c_str()).number();
+  return all;
 }
 
 void JsonPlace::fields(const std::function<void(Fields&)>& describe) const {

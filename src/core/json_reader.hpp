@@ -1,6 +1,7 @@
 /// Values out of a JSON file, each with its JSON pointer (RFC 6901), so that what is wrong can be named.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -43,6 +44,8 @@ class JsonPlace {
   std::string text() const;
   Vec3 vector(Limits limits = {}) const;
   Pose pose() const;
+  /// An object of numbers.
+  std::map<std::string, double> numbers() const;
   /// Fills the fields that `describe` names; all of them must be there.
   void fields(const std::function<void(Fields&)>& describe) const;
 

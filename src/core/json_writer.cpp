@@ -8,6 +8,7 @@ namespace {
 
 class JsonFields : public Fields {
  public:
+  using Fields::vector;
   void number(const char* key, double& value, Limits, const char*, const char*) override { put(key, to_json(value)); }
   void integer(const char* key, int& value, Limits, const char*, const char*) override { put(key, value); }
   void seed(const char* key, std::uint64_t& value, const char*) override { put(key, value); }

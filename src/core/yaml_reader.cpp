@@ -1,14 +1,13 @@
 #include <yaml-cpp/eventhandler.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <sstream>
 
-#include "core/limits_text.hpp"
+#include "core/yaml_value.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/text_scan.hpp"
 #include "tubebin/core/yaml.hpp"
@@ -18,14 +17,6 @@ namespace {
 
 constexpr int kMaxIncludeDepth = 8;
 constexpr auto kIncludeKey = "include";
-
-std::string place_of(const std::string& file, const YAML::Mark& mark) {
-  return fmt::format("{}:{}:{}", file, mark.line + 1, mark.column + 1);
-}
-
-std::string valid_range(Limits limits, const char* unit) {
-  return limits_text(limits) + (*unit ? fmt::format(" {}", unit) : "");
-}
 
 /// Levenshtein distance, to suggest the key that was probably meant.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -46,115 +37,130 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 /// Reads one mapping; nested mappings get a reader of their own.
 class Reader : public Fields {
  public:
-  Reader(const YAML::Node& node, std::string file, std::string prefix, KeyPlaces& places)
-      : node_(node), file_(std::move(file)), prefix_(std::move(prefix)), places_(places) {
+  using Fields::vector;
+  Reader(YamlValue mapping, KeyPlaces& places, Distributions* distributions = nullptr)
+      : mapping_(std::move(mapping)), places_(places), distributions_(distributions) {
     check_keys_once();
   }
 
+  void randomized(Distributions& distributions) override { distributions_ = &distributions; }
   void number(const char* key, double& value, Limits limits, const char* unit, const char*) override {
-    if (const YAML::Node found = find(key)) value = to_number(found, path(key), limits, unit);
+    if (const auto found = find(key)) read_number(*found, value, limits, unit);
   }
   void integer(const char* key, int& value, Limits limits, const char* unit, const char*) override {
-    if (const YAML::Node found = find(key)) value = to_integer(found, path(key), limits, unit);
+    if (const auto found = find(key)) read_number(*found, value, limits, unit);
   }
   void seed(const char* key, std::uint64_t& value, const char*) override {
-    const YAML::Node found = find(key);
+    constexpr auto kValid = "a whole number from 0 to 18446744073709551615";
+    const auto found = find(key);
     if (!found) return;
-    const std::string text = scalar(found, path(key), "a whole number from 0 to 18446744073709551615");
-    const auto number = tubebin::to_number<std::uint64_t>(text);
-    if (!number) fail(found, path(key), text, "a whole number from 0 to 18446744073709551615");
+    const auto number = to_number<std::uint64_t>(found->text(kValid));
+    if (!number) found->fail(kValid);
     value = *number;
   }
   void flag(const char* key, bool& value, const char*) override {
-    const YAML::Node found = find(key);
-    if (!found) return;
-    const std::string text = scalar(found, path(key), "true or false");
-    if (!YAML::convert<bool>::decode(found, value)) fail(found, path(key), text, "true or false");
+    const auto found = find(key);
+    if (found && (!found->node.IsScalar() || !YAML::convert<bool>::decode(found->node, value)))
+      found->fail("true or false");
   }
   void text(const char* key, std::string& value, const char*) override {
-    if (const YAML::Node found = find(key)) value = scalar(found, path(key), "a text");
+    if (const auto found = find(key)) value = found->text("a text");
   }
   void vector(const char* key, Vec3& value, Limits limits, const char* unit, const char*) override {
-    const YAML::Node found = find(key);
+    const auto found = find(key);
     if (!found) return;
-    if (!found.IsSequence() || found.size() != 3)
-      fail(found, path(key), dump(found), "a list of three numbers, as [0.1, 0.2, 0.3]");
-    for (int i = 0; i < 3; ++i) value[i] = to_number(found[i], fmt::format("{}[{}]", path(key), i), limits, unit);
+    if (!found->node.IsSequence() || found->size() != 3) found->fail("a list of three numbers, as [0.1, 0.2, 0.3]");
+    for (std::size_t i = 0; i < 3; ++i)
+      read_number(found->element(i), value[static_cast<Eigen::Index>(i)], limits, unit);
+  }
+  void vector(const char* key, std::optional<Vec3>& value, Limits limits, const char* unit, const char* doc) override {
+    known_.insert(key);
+    if (!mapping_.at(key).node) return;
+    if (!value) value = Vec3::Zero();
+    vector(key, *value, limits, unit, doc);
   }
   void integers(const char* key, std::vector<int>& value, Limits limits, const char*) override {
-    const YAML::Node found = find(key);
+    const auto found = find(key);
     if (!found) return;
-    if (!found.IsSequence() || found.size() == 0)
-      fail(found, path(key), dump(found), "a list of whole numbers, as [1, 5, 10]");
-    value.clear();
-    for (std::size_t i = 0; i < found.size(); ++i)
-      value.push_back(to_integer(found[i], fmt::format("{}[{}]", path(key), i), limits, ""));
+    if (!found->node.IsSequence() || found->size() == 0) found->fail("a list of whole numbers, as [1, 5, 10]");
+    value.assign(found->size(), 0);
+    for (std::size_t i = 0; i < found->size(); ++i) found->element(i).read(value[i], limits, "");
   }
   void choice(const char* key, int& value, const std::vector<std::string>& names, const char*) override {
-    const YAML::Node found = find(key);
+    const auto found = find(key);
     if (!found) return;
     const std::string valid = fmt::format("one of {}", fmt::join(names, ", "));
-    const std::string text = scalar(found, path(key), valid);
-    const auto name = std::find(names.begin(), names.end(), text);
-    if (name == names.end()) fail(found, path(key), text, valid);
+    const auto name = std::find(names.begin(), names.end(), found->text(valid));
+    if (name == names.end()) found->fail(valid);
     value = static_cast<int>(name - names.begin());
   }
   void group(const char* key, const char*, const std::function<void(Fields&)>& describe_inner) override {
-    const YAML::Node found = find(key);
-    if (!found) return;
-    if (!found.IsMap()) fail(found, path(key), dump(found), "a mapping of keys to values");
-    Reader inner(found, file_, path(key), places_);
-    describe_inner(inner);
-    inner.reject_unknown_keys();
+    if (const auto found = find(key)) read_mapping(*found, describe_inner);
   }
 
   void list(const char* key, const char*, std::size_t, const std::function<void(std::size_t)>& resize,
             const std::function<void(Fields&, std::size_t)>& describe_element) override {
-    const YAML::Node found = find(key);
+    const auto found = find(key);
     if (!found) return;
-    if (!found.IsSequence() || found.size() == 0) fail(found, path(key), dump(found), "a list of mappings");
-    resize(found.size());
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      const std::string element_path = fmt::format("{}[{}]", path(key), i);
-      places_.set(element_path, place_of(file_, found[i].Mark()));
-      if (!found[i].IsMap()) fail(found[i], element_path, dump(found[i]), "a mapping of keys to values");
-      Reader inner(found[i], file_, element_path, places_);
-      describe_element(inner, i);
-      inner.reject_unknown_keys();
+    if (!found->node.IsSequence() || found->size() == 0) found->fail("a list of mappings");
+    if (distributions_ != nullptr)
+      std::erase_if(*distributions_, [&](const auto& entry) { return entry.first.starts_with(found->key_path + "["); });
+    resize(found->size());
+    for (std::size_t i = 0; i < found->size(); ++i) {
+      const YamlValue element = found->element(i);
+      places_.set(element.key_path, element.place());
+      read_mapping(element, [&](Fields& inner) { describe_element(inner, i); });
     }
   }
 
   void accept(const char* key) { known_.insert(key); }
 
   void reject_unknown_keys() const {
-    for (const auto& entry : node_) {
+    for (const auto& entry : mapping_.node) {
       const std::string key = entry.first.as<std::string>();
       if (known_.contains(key)) continue;
-      throw_config_error("{}: {}: unknown key{}; valid here: {}", place_of(file_, entry.first.Mark()), path(key),
-                         suggestion(key), fmt::join(known_, ", "));
+      throw_config_error("{}: {}: unknown key{}; valid here: {}", place_of(mapping_.file, entry.first.Mark()),
+                         mapping_.at(key).key_path, suggestion(key), fmt::join(known_, ", "));
     }
   }
 
  private:
-  std::string path(const std::string& key) const { return prefix_.empty() ? key : prefix_ + "." + key; }
-
   /// Null counts as a value that is wrong, not as a missing key.
-  YAML::Node find(const char* key) {
+  std::optional<YamlValue> find(const char* key) {
     known_.insert(key);
-    const YAML::Node found = node_[key];
-    if (!found) return YAML::Node(YAML::NodeType::Undefined);
-    places_.set(path(key), place_of(file_, found.Mark()));
+    const YamlValue found = mapping_.at(key);
+    if (!found.node) return std::nullopt;
+    places_.set(found.key_path, found.place());
     return found;
+  }
+
+  void read_mapping(const YamlValue& value, const std::function<void(Fields&)>& describe_inner) {
+    if (!value.node.IsMap()) value.fail("a mapping of keys to values");
+    Reader inner(value, places_, distributions_);
+    describe_inner(inner);
+    inner.reject_unknown_keys();
+  }
+
+  /// A number, or what it is drawn from.
+  template <typename Number>
+  void read_number(const YamlValue& from, Number& value, Limits limits, const char* unit) {
+    if (distributions_ == nullptr) return from.read(value, limits, unit);
+    distributions_->erase(from.key_path);
+    if (!from.node.IsMap()) return from.read(value, limits, unit);
+    const Distribution distribution = read_distribution(from, limits, unit, std::is_integral_v<Number>);
+    value = static_cast<Number>(distribution.low());
+    distributions_->emplace(from.key_path, distribution);
+    places_.set(from.key_path, from.place());
   }
 
   void check_keys_once() const {
     std::set<std::string> seen;
-    for (const auto& entry : node_) {
-      if (!entry.first.IsScalar())
-        throw_config_error("{}: a key must be a plain word", place_of(file_, entry.first.Mark()));
+    for (const auto& entry : mapping_.node) {
+      const std::string place = place_of(mapping_.file, entry.first.Mark());
+      if (!entry.first.IsScalar()) throw_config_error("{}: a key must be a plain word", place);
       const std::string key = entry.first.as<std::string>();
       if (!seen.insert(key).second)
-        throw_config_error("{}: {}: the key stands here a second time", place_of(file_, entry.first.Mark()), path(key));
+        throw_config_error("{}: {}: the key stands here a second time", place, mapping_.at(key).key_path);
     }
   }
 
@@ -167,47 +173,9 @@ class Reader : public Fields {
     return fmt::format(", did you mean '{}'?", *nearest);
   }
 
-  static std::string dump(const YAML::Node& node) {
-    if (node.IsNull()) return "nothing";
-    std::ostringstream out;
-    out << node;
-    std::string text = out.str();
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return text.size() > 60 ? text.substr(0, 57) + "..." : text;
-  }
-
-  [[noreturn]] void fail(const YAML::Node& node, const std::string& key_path, const std::string& value,
-                         const std::string& valid) const {
-    throw_config_error("{}: {}: '{}' is not valid; valid: {}", place_of(file_, node.Mark()), key_path, value, valid);
-  }
-
-  std::string scalar(const YAML::Node& node, const std::string& key_path, const std::string& valid) const {
-    if (!node.IsScalar()) fail(node, key_path, dump(node), valid);
-    return node.Scalar();
-  }
-
-  double to_number(const YAML::Node& node, const std::string& key_path, Limits limits, const char* unit) const {
-    const std::string valid = valid_range(limits, unit);
-    const std::string text = scalar(node, key_path, valid);
-    const auto value = tubebin::to_number<double>(text);
-    if (!value || !(*value >= limits.min && *value <= limits.max)) fail(node, key_path, text, valid);
-    return *value;
-  }
-
-  int to_integer(const YAML::Node& node, const std::string& key_path, Limits limits, const char* unit) const {
-    limits.min = std::max<double>(limits.min, std::numeric_limits<int>::min());
-    limits.max = std::min<double>(limits.max, std::numeric_limits<int>::max());
-    const std::string valid = "a whole number, " + valid_range(limits, unit);
-    const std::string text = scalar(node, key_path, valid);
-    const auto value = tubebin::to_number<int>(text);  // 010 is ten, as on the command line, and not YAML 1.1's eight
-    if (!value || *value < limits.min || *value > limits.max) fail(node, key_path, text, valid);
-    return *value;
-  }
-
-  const YAML::Node node_;
-  std::string file_;
-  std::string prefix_;
+  const YamlValue mapping_;
   KeyPlaces& places_;
+  Distributions* distributions_;  // nothing where numbers can't be drawn
   std::set<std::string> known_;
 };
 
@@ -259,7 +227,7 @@ std::string read_limited(const std::string& path) try {
 void read_root(const YAML::Node& root, const std::string& name, KeyPlaces& places, bool may_include,
                const std::function<void(Fields&)>& describe) {
   places.set("", name);
-  Reader reader(root, name, "", places);
+  Reader reader({root, name, ""}, places);
   if (may_include) reader.accept(kIncludeKey);
   describe(reader);
   reader.reject_unknown_keys();

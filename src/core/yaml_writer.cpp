@@ -22,11 +22,13 @@ std::string yaml_quoted(const std::string& text) {
 /// Turns each field into its key, value text, unit, valid values and doc; subclasses lay them out.
 class TextFields : public Fields {
  public:
+  using Fields::vector;
+  void randomized(Distributions& distributions) override { distributions_ = &distributions; }
   void number(const char* key, double& value, Limits limits, const char* unit, const char* doc) override {
-    entry(key, shortest(value), unit, limits_text(limits), doc);
+    entry(key, number_text(key, shortest(value)), unit, limits_text(limits), doc);
   }
   void integer(const char* key, int& value, Limits limits, const char* unit, const char* doc) override {
-    entry(key, fmt::format("{}", value), unit, limits_text(limits), doc);
+    entry(key, number_text(key, fmt::format("{}", value)), unit, limits_text(limits), doc);
   }
   void seed(const char* key, std::uint64_t& value, const char* doc) override {
     entry(key, fmt::format("{}", value), "", limits_text({.min = 0.0}), doc);
@@ -38,8 +40,9 @@ class TextFields : public Fields {
     entry(key, yaml_quoted(value), "", "text", doc);
   }
   void vector(const char* key, Vec3& value, Limits limits, const char* unit, const char* doc) override {
-    entry(key, fmt::format("[{}, {}, {}]", shortest(value.x()), shortest(value.y()), shortest(value.z())), unit,
-          limits_text(limits), doc);
+    std::vector<std::string> numbers;
+    for (int i = 0; i < 3; ++i) numbers.push_back(number_text(fmt::format("{}[{}]", key, i), shortest(value[i])));
+    entry(key, fmt::format("[{}]", fmt::join(numbers, ", ")), unit, limits_text(limits), doc);
   }
   void integers(const char* key, std::vector<int>& value, Limits limits, const char* doc) override {
     entry(key, fmt::format("[{}]", fmt::join(value, ", ")), "", limits_text(limits), doc);
@@ -51,6 +54,26 @@ class TextFields : public Fields {
  protected:
   virtual void entry(const std::string& key, const std::string& value, const std::string& unit,
                      const std::string& valid, const std::string& doc) = 0;
+
+  const std::string& prefix() const { return prefix_; }
+  /// Calls `describe_inner` with `key` in the paths of what it describes.
+  void within(const std::string& key, const std::function<void()>& describe_inner) {
+    const std::string outer = prefix_;
+    prefix_ += key + ".";
+    describe_inner();
+    prefix_ = outer;
+  }
+
+ private:
+  /// The number, or what it is drawn from.
+  std::string number_text(const std::string& key, const std::string& number) const {
+    if (distributions_ == nullptr) return number;
+    const auto found = distributions_->find(prefix_ + key);
+    return found == distributions_->end() ? number : found->second.text();
+  }
+
+  std::string prefix_;  // of key paths: "tube."
+  const Distributions* distributions_ = nullptr;
 };
 
 class YamlText : public TextFields {
@@ -58,7 +81,7 @@ class YamlText : public TextFields {
   void group(const char* key, const char* doc, const std::function<void(Fields&)>& describe_inner) override {
     begin(key, doc);
     indent_ += "  ";
-    describe_inner(*this);
+    within(key, [&] { describe_inner(*this); });
     indent_.resize(indent_.size() - 2);
   }
   void list(const char* key, const char* doc, std::size_t size, const std::function<void(std::size_t)>&,
@@ -68,7 +91,7 @@ class YamlText : public TextFields {
     indent_ += "    ";
     for (std::size_t i = 0; i < size; ++i) {
       const std::size_t dash = out_.size() + indent_.size() - 2;
-      describe_element(*this, i);
+      within(fmt::format("{}[{}]", key, i), [&] { describe_element(*this, i); });
       out_[dash] = '-';
     }
     indent_.resize(indent_.size() - 4);
@@ -100,11 +123,12 @@ std::string escape_markdown(const std::string& text) {
 
 class MarkdownTable : public TextFields {
  public:
+  using TextFields::vector;
+  void vector(const char* key, std::optional<Vec3>&, Limits limits, const char* unit, const char* doc) override {
+    entry(key, "none", unit, limits_text(limits), doc);
+  }
   void group(const char* key, const char*, const std::function<void(Fields&)>& describe_inner) override {
-    const std::string outer = prefix_;
-    prefix_ += std::string(key) + ".";
-    describe_inner(*this);
-    prefix_ = outer;
+    within(key, [&] { describe_inner(*this); });
   }
   void list(const char* key, const char*, std::size_t size, const std::function<void(std::size_t)>&,
             const std::function<void(Fields&, std::size_t)>& describe_element) override {
@@ -117,21 +141,17 @@ class MarkdownTable : public TextFields {
  protected:
   void entry(const std::string& key, const std::string& value, const std::string& unit, const std::string& valid,
              const std::string& doc) override {
-    out_ << fmt::format("| `{}{}` | {} | {} | {} | {} |\n", prefix_, key, value, unit, valid, escape_markdown(doc));
+    out_ << fmt::format("| `{}{}` | {} | {} | {} | {} |\n", prefix(), key, value, unit, valid, escape_markdown(doc));
   }
 
  private:
   std::ostringstream out_;
-  std::string prefix_;
 };
 
 class KeyValueList : public TextFields {
  public:
   void group(const char* key, const char*, const std::function<void(Fields&)>& describe_inner) override {
-    const std::string outer = prefix_;
-    prefix_ += std::string(key) + ".";
-    describe_inner(*this);
-    prefix_ = outer;
+    within(key, [&] { describe_inner(*this); });
   }
   void list(const char* key, const char*, std::size_t size, const std::function<void(std::size_t)>&,
             const std::function<void(Fields&, std::size_t)>& describe_element) override {
@@ -143,11 +163,8 @@ class KeyValueList : public TextFields {
  protected:
   void entry(const std::string& key, const std::string& value, const std::string&, const std::string&,
              const std::string&) override {
-    values.push_back({prefix_ + key, value});
+    values.push_back({prefix() + key, value});
   }
-
- private:
-  std::string prefix_;
 };
 
 }  // namespace

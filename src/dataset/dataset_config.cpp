@@ -4,6 +4,7 @@
 #include <charconv>
 #include <set>
 
+#include "dataset/randomization.hpp"
 #include "tubebin/core/version.hpp"
 #include "tubebin/render/preview.hpp"
 
@@ -49,9 +50,18 @@ void check_version(const DatasetConfig& config, const KeyPlaces& places) {
                                             config.tool_version, tool_version()));
 }
 
-void check_scanner(const scene::Scanner& scanner, const scene::Bin& bin, const KeyPlaces& places,
+void check_look_at(const ScannerOptions& scanner, const KeyPlaces& places, const std::string& prefix) {
+  if (!scanner.look_at) return;
+  if (!scanner.rotation_deg.isZero(0.0))
+    places.fail(prefix + ".rotation_deg", "look_at says where the scanner looks; valid: one of the two");
+  if (*scanner.look_at == scanner.position)
+    places.fail(prefix + ".look_at", "is the scanner's position; valid: another point");
+}
+
+void check_scanner(const ScannerOptions& scanner, const scene::Bin& bin, const KeyPlaces& places,
                    const std::string& prefix) {
   check(scanner, places, prefix);
+  check_look_at(scanner, places, prefix);
   for (const scene::BinPart& part : scene::bin_parts(bin))
     if (part.box.contains(part.world_from_part.inverse() * scanner.position))
       places.fail(prefix + ".position",
@@ -77,18 +87,34 @@ int parse_count(const std::string& text, const std::string& whole) {
   return value;
 }
 
-void describe_with_effects(Fields& fields, scene::Scanner& scanner) {
+void describe_with_effects(Fields& fields, ScannerOptions& scanner) {
   describe(fields, scanner);
+  fields.vector(
+      "look_at", scanner.look_at, {-1000.0, 1000.0}, "m",
+      "instead of rotation_deg: the point of the world that the optical axis meets; image x is level, and along "
+      "the bin where the scanner looks straight down");
   fields.group("effects", "what a real scanner adds (docs/scanner_effects.md); all off: exact rays",
                [&](Fields& effects) { describe(effects, scanner.effects); });
 }
 
+/// The scanners' numbers are drawn from what those of `scanner` are.
+void inherit_distributions(DatasetConfig& config) {
+  const std::string from = "scanner.";
+  const Distributions before = config.distributions;
+  for (const auto& [key, distribution] : before)
+    for (std::size_t i = 0; key.starts_with(from) && i < config.scanners.size(); ++i)
+      config.distributions[fmt::format("scanners[{}].{}", i, key.substr(from.size()))] = distribution;
+}
+
 /// What an element of the list does not say is as in `scanner`, which an included file may have set.
 void describe_scanners(Fields& fields, DatasetConfig& config) {
-  scene::Scanner fresh = config.scanner;
+  ScannerOptions fresh = config.scanner;
   fields.list(
       "scanners", "several scanners or poses, merged into one cloud, instead of `scanner`", config.scanners.size(),
-      [&](std::size_t size) { config.scanners.assign(size, config.scanner); },
+      [&](std::size_t size) {
+        config.scanners.assign(size, config.scanner);
+        inherit_distributions(config);
+      },
       [&](Fields& inner, std::size_t i) {
         describe_with_effects(inner, i < config.scanners.size() ? config.scanners[i] : fresh);
       });
@@ -99,7 +125,17 @@ void describe_scanners(Fields& fields, DatasetConfig& config) {
 
 }  // namespace
 
+std::vector<scene::Scanner> DatasetConfig::all_scanners() const {
+  std::vector<scene::Scanner> all;
+  for (const ScannerOptions& options : scanners.empty() ? std::vector{scanner} : scanners) {
+    all.push_back(options);
+    if (options.look_at) all.back().rotation_deg = scene::rotation_deg_towards(*options.look_at, options.position);
+  }
+  return all;
+}
+
 void describe(Fields& fields, DatasetConfig& config) {
+  fields.randomized(config.distributions);
   fields.text("tool_version", config.tool_version,
               "version that made the data set, refused by any other; leave it out of a file of your own");
   fields.text("set", config.set, "name of the set; scenes are called <set><tubes>/<case>, as A10/007");
@@ -155,6 +191,11 @@ void check(const DatasetConfig& config, const KeyPlaces& places) {
 }
 
 void check_of_any_version(const DatasetConfig& config, const KeyPlaces& places) {
+  check_numbers(config, places);
+  if (!config.distributions.empty()) check_distributions(config, places);
+}
+
+void check_numbers(const DatasetConfig& config, const KeyPlaces& places) {
   check_set_name(config, places);
   check_tubes_once(config, places);
   check_scene_count(config, places);
@@ -214,6 +255,8 @@ std::string document_config() {
          "impossible value is an error that names the place in the file and what would be valid. A top-level key\n"
          "`include: other.yaml` (a path relative to the file) takes all values of that file first. A dot in a name\n"
          "below stands for nesting: `tube.radius` is the key `radius` in the mapping `tube`.\n\n"
+         "Most numbers may be left open, to be drawn for each scene or tube, as `{uniform: [0.008, 0.016]}`:\n"
+         "[randomization.md](randomization.md).\n\n"
          "`generate_dataset --config-reference` prints this page.\n\n" +
          document_fields(fields_of(defaults)) + document_shapes();
 }

@@ -63,7 +63,7 @@ jobs::AttemptResult make_scenes(const DatasetFolder& folder, std::span<const Sce
   std::vector<std::function<std::string()>> written;
   for (const SceneId& id : scenes) {
     if (folder.is_complete(id.name())) continue;
-    GeneratedScene scene = show_pile(folder.config(), id, made.piles[static_cast<std::size_t>(std::max(id.step, 0))]);
+    GeneratedScene scene = show_pile(made, id);
     if (!scene.failure.empty()) return jobs::failed_attempt(scene.failure, scene.failure_detail);
     written.push_back(begin_scene(folder, id, std::move(scene)));
   }

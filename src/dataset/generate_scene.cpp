@@ -40,7 +40,9 @@ std::uint64_t attempt_seed(const DatasetConfig& config, const SceneId& id, int a
                       static_cast<std::uint64_t>(id.case_number), static_cast<std::uint64_t>(attempt)});
 }
 
-GeneratedScene show_pile(const DatasetConfig& config, const SceneId& id, const Pile& pile) {
+GeneratedScene show_pile(const Piles& piles, const SceneId& id) {
+  const DatasetConfig& config = piles.config;
+  const Pile& pile = piles.piles[static_cast<std::size_t>(std::max(id.step, 0))];
   GeneratedScene result;
   result.seconds = pile.seconds;
   result.physics = pile.physics;
@@ -73,6 +75,7 @@ GeneratedScene show_pile(const DatasetConfig& config, const SceneId& id, const P
                            .contacts = pile.contacts,
                            .further_windows = std::move(scanned.further_windows),
                            .relations = std::move(relations),
+                           .drawn = piles.drawn,
                            .lift = pile.lift};
   result.content.cloud = std::move(scanned.cloud);
   if (config.output.clean_cloud) {
@@ -90,7 +93,7 @@ GeneratedScene show_pile(const DatasetConfig& config, const SceneId& id, const P
 
 GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, int attempt) {
   const Piles made = make_piles(config, id, attempt, std::max(id.step, 0));
-  if (made.failure.empty()) return show_pile(config, id, made.piles.back());
+  if (made.failure.empty()) return show_pile(made, id);
   GeneratedScene result;
   result.failure = made.failure;
   result.failure_detail = made.failure_detail;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "dataset/randomization.hpp"
 #include "dataset/stage_clock.hpp"
-#include "tubebin/tube/tube_generator.hpp"
 
 namespace tubebin::dataset {
 namespace {
@@ -62,15 +62,22 @@ scene::PlacedSurroundings draw_surroundings(const DatasetConfig& config, std::ui
   return scene::place_surroundings(config.surroundings, config.bin, tubes, config.all_scanners(), random);
 }
 
-Piles make_piles(const DatasetConfig& config, const SceneId& id, int attempt, int lifts) {
+Piles make_piles(const DatasetConfig& undrawn, const SceneId& id, int attempt, int lifts) {
   Piles result;
   std::map<std::string, double> seconds;
   StageClock clock(seconds);
-  const std::uint64_t seed = attempt_seed(config, id, attempt);
+  const std::uint64_t seed = attempt_seed(undrawn, id, attempt);
   Random random(seed);
-  const std::vector<tube::Tube> tubes = config.kinds.empty()
-                                            ? tube::generate_tubes(id.tubes, config.tube, random)
-                                            : tube::generate_mixed_tubes(id.tubes, config.kinds, random);
+  result.drawn = draw_scene_numbers(undrawn, seed);
+  result.config = with_numbers(undrawn, result.drawn);
+  const DatasetConfig& config = result.config;
+  std::vector<tube::Tube> tubes;
+  try {
+    check_drawn(config);
+    tubes = make_tubes(config, id.tubes, seed, random);
+  } catch (const ConfigError& error) {
+    return {.failure = "contradiction", .failure_detail = error.what(), .physics = {}, .piles = {}};
+  }
   clock.end_stage("build");
   physics::DropResult drop = physics::drop_tubes(tubes, config.bin, config.physics, random.bits());
   clock.end_stage("drop");

@@ -21,6 +21,8 @@ struct Piles {
   std::string failure_detail;
   physics::DropFigures physics;  ///< of what failed
   std::vector<Pile> piles;       ///< after 0, 1, ..., lifts lifts
+  DatasetConfig config = {};     ///< with the numbers that were drawn for them
+  DrawnNumbers drawn = {};       ///< these
 };
 
 Piles make_piles(const DatasetConfig& config, const SceneId& id, int attempt, int lifts);
@@ -30,7 +32,7 @@ Piles make_piles(const DatasetConfig& config, const SceneId& id, int attempt, in
 scene::PlacedSurroundings draw_surroundings(const DatasetConfig& config, std::uint64_t seed,
                                             const std::vector<scene::PlacedTube>& tubes);
 
-/// Scans a pile, and tells how it lies.
-GeneratedScene show_pile(const DatasetConfig& config, const SceneId& id, const Pile& pile);
+/// Scans piles[step], and tells how it lies.
+GeneratedScene show_pile(const Piles& piles, const SceneId& id);
 
 }  // namespace tubebin::dataset

@@ -7,7 +7,9 @@
 #include <set>
 
 #include "dataset/pile.hpp"
+#include "dataset/randomization.hpp"
 #include "dataset/surface_distance.hpp"
+#include "dataset/verify_settings.hpp"
 #include "tubebin/core/file_record.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
 #include "tubebin/scan/scanner.hpp"
@@ -226,8 +228,11 @@ void check_lift(const scene::DatasetFiles& files, const scene::SceneRecord& scen
   if (scene.scene.surroundings != before.scene.surroundings)
     problems.push_back(fmt::format("what stands around the bin is not what {} has there", id.name()));
   const bool same = std::ranges::equal(left, scene.scene.tubes, [](const auto& a, const auto& b) {
-    return a.tube.nodes == b.tube.nodes && a.tube.cylinders == b.tube.cylinders && a.tube.radius == b.tube.radius;
+    return a.tube.nodes == b.tube.nodes && a.tube.cylinders == b.tube.cylinders && a.tube.radius == b.tube.radius &&
+           a.tube.drawn == b.tube.drawn;
   });
+  if (before.drawn != scene.drawn)
+    problems.push_back(fmt::format("scene.json has other drawn numbers than that of {}", id.name()));
   if (!same) problems.push_back(fmt::format("the tubes are not those that {} has beside the lifted one", id.name()));
   else if (scene::find_moved(left, scene.scene.tubes) != scene.lift->moved)
     problems.push_back(fmt::format("the tubes did not move from where {} has them as scene.json says", id.name()));
@@ -239,7 +244,7 @@ void check_relations(const scene::SceneRecord& scene, Problems& problems) {
     problems.push_back("scene.json's amodal pixels, occlusions or entanglement are not those of its tubes");
 }
 
-void check_content(const scene::DatasetFiles& files, const DatasetConfig& config, const SceneId& id,
+void check_content(const scene::DatasetFiles& files, const DatasetConfig& undrawn, const SceneId& id,
                    const ManifestRecord& record, Problems& problems) {
   const auto parse = [&](const auto& parser, const std::string& file) {
     return parser(files.read(record.id, file), files.place(record.id, file));
@@ -248,7 +253,10 @@ void check_content(const scene::DatasetFiles& files, const DatasetConfig& config
     return cloud::parse_cloud(bytes, name);
   };
   const scene::SceneRecord scene = parse(scene::parse_scene_json, "scene.json");
+  const DatasetConfig config = with_numbers(undrawn, scene.drawn);
   check_identity(scene, config, id, record, problems);
+  const Problems settings = check_settings(scene, config);
+  problems.insert(problems.end(), settings.begin(), settings.end());
   check_kinds(scene, config, problems);
   check_surroundings(scene, config, problems);
   check_colors(scene, problems);

@@ -31,10 +31,9 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kIndex = "index.json";
 constexpr const char* kIndexFormat = "tubebin export 1";
 
-/// The settings of the drop, which Gazebo goes on with; of a data set without a configuration, the defaults.
-physics::PhysicsOptions physics_of(const std::string& dataset) {
-  return path_exists(dataset + "/config.yaml") ? dataset::read_dataset_config(dataset).physics
-                                               : physics::PhysicsOptions{};
+/// With the settings of the drop, which Gazebo goes on with; of a data set without a configuration, the defaults.
+dataset::DatasetConfig config_of(const std::string& dataset) {
+  return path_exists(dataset + "/config.yaml") ? dataset::read_dataset_config(dataset) : dataset::DatasetConfig{};
 }
 
 ImageRegion region_of(const ExportOptions& options) { return options.crop ? ImageRegion::bin : ImageRegion::full; }
@@ -47,7 +46,7 @@ const std::map<std::string, MakeFormat>& formats() {
       {"coco", [](const ExportOptions& options) { return coco_format(region_of(options)); }},
       {"npz", [](const ExportOptions& options) { return npz_format(options.normals); }},
       {"ply", [](const ExportOptions&) { return ply_format(); }},
-      {"sdf", [](const ExportOptions& options) { return sdf_format(physics_of(options.dataset)); }}};
+      {"sdf", [](const ExportOptions& options) { return sdf_format(config_of(options.dataset)); }}};
   return formats;
 }
 

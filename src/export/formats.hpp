@@ -5,7 +5,7 @@
 
 #include "export/scene_export.hpp"
 #include "export/scene_image.hpp"
-#include "tubebin/physics/drop_simulator.hpp"
+#include "tubebin/dataset/dataset_config.hpp"
 
 namespace tubebin::exports {
 
@@ -17,7 +17,7 @@ std::unique_ptr<ExportFormat> coco_format(ImageRegion region);
 std::unique_ptr<ExportFormat> ply_format();
 /// Arrays for numpy, PyTorch and JAX, one file a scene; the normals of the surfaces are optional.
 std::unique_ptr<ExportFormat> npz_format(bool with_normals);
-/// Gazebo worlds (SDFormat 1.7), as the published data set's, with the settings of the drop.
-std::unique_ptr<ExportFormat> sdf_format(const physics::PhysicsOptions& physics);
+/// Gazebo worlds (SDFormat 1.7), as the published data set's, with the settings of each scene's drop.
+std::unique_ptr<ExportFormat> sdf_format(const dataset::DatasetConfig& config);
 
 }  // namespace tubebin::exports

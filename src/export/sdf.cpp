@@ -2,6 +2,7 @@
 // Gazebo has) and without a <state>: the models' own poses are the settled ones.
 #include <cmath>
 
+#include "dataset/randomization.hpp"
 #include "export/formats.hpp"
 #include "export/published_layout.hpp"
 #include "export/tube_mesh_file.hpp"
@@ -311,14 +312,15 @@ class WorldWriter {
 
 class SdfFormat : public ExportFormat {
  public:
-  explicit SdfFormat(const physics::PhysicsOptions& physics) : physics_(physics) {}
+  explicit SdfFormat(dataset::DatasetConfig config) : config_(std::move(config)) {}
 
   std::string scene_path(const SceneEntry& entry) const override {
     return published_path(entry, "gazebo_worlds", ".world");
   }
 
   SceneFiles export_scene(const SceneToExport& scene) const override {
-    SceneFiles files{.beside = {}, .scene = {{"", WorldWriter(scene, physics_).write()}}};
+    const dataset::DatasetConfig drawn = dataset::with_numbers(config_, scene.record.drawn);
+    SceneFiles files{.beside = {}, .scene = {{"", WorldWriter(scene, drawn.physics).write()}}};
     const std::vector<scene::PlacedTube>& tubes = scene.record.scene.tubes;
     for (std::size_t k = 0; k < tubes.size(); ++k)
       if (tubes[k].solids_in_world().has_open_end()) files.beside[mesh_path(scene.entry, k)] = tube_stl(tubes[k].tube);
@@ -326,13 +328,13 @@ class SdfFormat : public ExportFormat {
   }
 
  private:
-  physics::PhysicsOptions physics_;
+  dataset::DatasetConfig config_;
 };
 
 }  // namespace
 
-std::unique_ptr<ExportFormat> sdf_format(const physics::PhysicsOptions& physics) {
-  return std::make_unique<SdfFormat>(physics);
+std::unique_ptr<ExportFormat> sdf_format(const dataset::DatasetConfig& config) {
+  return std::make_unique<SdfFormat>(config);
 }
 
 }  // namespace tubebin::exports

@@ -1,5 +1,7 @@
 #include "tubebin/scene/scene.hpp"
 
+#include <cmath>
+
 #include "scene/pixel_limit.hpp"
 
 namespace tubebin::scene {
@@ -29,6 +31,15 @@ Pose Scanner::world_from_scanner() const {
   pose.linear() = turned;
   pose.translation() = position;
   return pose;
+}
+
+Vec3 rotation_deg_towards(const Vec3& target, const Vec3& position) {
+  const Vec3 view = target - position;
+  const double horizontal = std::hypot(view.x(), view.y());
+  // A scanner that looks straight down is tilted about image x, which stays level, then turned about the vertical.
+  const double tilt = std::atan2(horizontal, -view.z());
+  const double turn = horizontal > 0.0 ? std::atan2(-view.x(), view.y()) : 0.0;
+  return {degrees(tilt), 0.0, degrees(turn)};
 }
 
 void describe(Fields& fields, Scanner& scanner) {

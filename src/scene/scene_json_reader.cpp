@@ -116,6 +116,7 @@ PlacedTube read_tube(const JsonPlace& place, std::size_t label) {
   PlacedTube placed;
   tube::Tube& tube = placed.tube;
   if (place.has("kind")) tube.kind = place.at("kind").text();
+  if (place.has("drawn")) tube.drawn = place.at("drawn").numbers();
   tube.radius = place.at("radius").number();
   if (tube.radius <= 0.0) place.at("radius").fail("a number above 0");
   tube.wall_thickness = place.at("wall_thickness").number({0.0, tube.radius});
@@ -219,6 +220,7 @@ SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
   SceneRecord record;
   record.id = root.at("id").text();
   record.seed = root.at("seed").whole(0, std::numeric_limits<std::uint64_t>::max());
+  if (root.has("drawn")) record.drawn = root.at("drawn").numbers();
   record.scene.bin = read_bin(root.at("bin"));
   record.colors.push_back(read_color(root.at("bin").at("color")));
   if (root.has("surroundings")) record.scene.surroundings = read_surroundings(root.at("surroundings"));

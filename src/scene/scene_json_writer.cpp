@@ -68,6 +68,7 @@ OrderedJson tube_to_json(const PlacedTube& placed, std::size_t label, cloud::Col
   }
   OrderedJson json = {{"id", label}, {"label", label}};
   if (!tube.kind.empty()) json["kind"] = tube.kind;
+  if (!tube.drawn.empty()) json["drawn"] = tube.drawn;
   json.update({{"color", color_to_json(color)},
                {"radius", to_json(tube.radius)},
                {"wall_thickness", to_json(tube.wall_thickness)},
@@ -138,11 +139,12 @@ std::string format_scene_json(const SceneRecord& record) {
                       {"tool_version", tool_version()},
                       {"units", {{"length", "m"}, {"mass", "kg"}, {"angle_deg", "degree"}, {"image", "pixel"}}},
                       {"id", record.id},
-                      {"seed", record.seed},
-                      {"bin", bin_to_json(record.scene.bin, record.colors[0])},
-                      {"scanner", scanner_to_json(record.scene.scanner, record.window)},
-                      {"tubes", OrderedJson::array()},
-                      {"contacts", OrderedJson::array()}};
+                      {"seed", record.seed}};
+  if (!record.drawn.empty()) json["drawn"] = record.drawn;
+  json.update({{"bin", bin_to_json(record.scene.bin, record.colors[0])},
+               {"scanner", scanner_to_json(record.scene.scanner, record.window)},
+               {"tubes", OrderedJson::array()},
+               {"contacts", OrderedJson::array()}});
   if (record.scene.surroundings) json["surroundings"] = surroundings_to_json(*record.scene.surroundings);
   if (!record.further_windows.empty()) json["further_scanners"] = further_scanners_to_json(record);
   for (std::size_t k = 0; k < record.scene.tubes.size(); ++k)

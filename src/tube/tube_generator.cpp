@@ -7,11 +7,14 @@
 namespace tubebin::tube {
 namespace {
 
-Tube generate_tube(const TubeOptions& options, Random& random) {
+Tube generate_tube(std::size_t number, std::size_t kind, TubeOptions options, const DrawOptions& draw_options,
+                   Random& random) {
+  const DrawnNumbers drawn = draw_options ? draw_options(number, kind, options) : DrawnNumbers{};
   Tube tube = options.shape->generate(options, random);
   tube.radius = options.radius;
   tube.wall_thickness = options.wall_thickness;
   tube.mass = options.mass;
+  tube.drawn = drawn;
   return tube;
 }
 
@@ -85,9 +88,10 @@ void check(const std::vector<TubeKind>& kinds, const std::vector<int>& tube_coun
   }
 }
 
-std::vector<Tube> generate_tubes(int count, const TubeOptions& options, Random& random) {
+std::vector<Tube> generate_tubes(int count, const TubeOptions& options, Random& random,
+                                 const DrawOptions& draw_options) {
   std::vector<Tube> tubes;
-  for (int m = 0; m < count; ++m) tubes.push_back(generate_tube(options, random));
+  for (int m = 0; m < count; ++m) tubes.push_back(generate_tube(tubes.size(), 0, options, draw_options, random));
   return tubes;
 }
 
@@ -96,15 +100,17 @@ std::string kind_name(const std::vector<TubeKind>& kinds, std::size_t index) {
   return kind.name.empty() ? fmt::format("{}_{}", kind.shape.name(), index + 1) : kind.name;
 }
 
-std::vector<Tube> generate_mixed_tubes(int count, const std::vector<TubeKind>& kinds, Random& random) {
+std::vector<Tube> generate_mixed_tubes(int count, const std::vector<TubeKind>& kinds, Random& random,
+                                       const DrawOptions& draw_options) {
   std::vector<const TubeKind*> drawn;
   for (const TubeKind& kind : kinds) drawn.insert(drawn.end(), static_cast<std::size_t>(kind.count), &kind);
   while (static_cast<int>(drawn.size()) < count) drawn.push_back(draw_by_share(kinds, random));
   shuffle(drawn, random);
   std::vector<Tube> tubes;
   for (const TubeKind* kind : drawn) {
-    tubes.push_back(generate_tube(*kind, random));
-    tubes.back().kind = kind_name(kinds, static_cast<std::size_t>(kind - kinds.data()));
+    const auto index = static_cast<std::size_t>(kind - kinds.data());
+    tubes.push_back(generate_tube(tubes.size(), index, *kind, draw_options, random));
+    tubes.back().kind = kind_name(kinds, index);
   }
   return tubes;
 }

@@ -5,11 +5,12 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
 
-#include "tubebin/core/geometry.hpp"
+#include "tubebin/core/distribution.hpp"
 
 namespace tubebin {
 
@@ -24,12 +25,19 @@ class Fields {
  public:
   virtual ~Fields() = default;
 
+  /// The numbers that are described from here on may be left open, to be drawn: `distributions` says which are.
+  virtual void randomized(Distributions& /*distributions*/) {}
+
   virtual void number(const char* key, double& value, Limits limits, const char* unit, const char* doc) = 0;
   virtual void integer(const char* key, int& value, Limits limits, const char* unit, const char* doc) = 0;
   virtual void seed(const char* key, std::uint64_t& value, const char* doc) = 0;
   virtual void flag(const char* key, bool& value, const char* doc) = 0;
   virtual void text(const char* key, std::string& value, const char* doc) = 0;
   virtual void vector(const char* key, Vec3& value, Limits limits, const char* unit, const char* doc) = 0;
+  /// One that may be missing.
+  virtual void vector(const char* key, std::optional<Vec3>& value, Limits limits, const char* unit, const char* doc) {
+    if (value) vector(key, *value, limits, unit, doc);
+  }
   virtual void integers(const char* key, std::vector<int>& value, Limits limits, const char* doc) = 0;
   /// `value` is an index into `names`.
   virtual void choice(const char* key, int& value, const std::vector<std::string>& names, const char* doc) = 0;

@@ -1,6 +1,7 @@
 /// What one data set is made from: everything that decides its bytes, and how many scenes of it are wanted.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,11 @@ struct SequenceOptions {
   physics::LiftOptions lift;
 };
 
+/// A scanner whose direction may be told by what it looks at.
+struct ScannerOptions : scene::Scanner {
+  std::optional<Vec3> look_at;  ///< metres, world frame; instead of rotation_deg
+};
+
 struct DatasetConfig {
   std::string tool_version;  ///< that makes the data set
   std::string set = "A";     ///< scenes are called `<set><tubes>/<case>`
@@ -44,13 +50,14 @@ struct DatasetConfig {
   scene::Bin bin;
   scene::SurroundingsOptions surroundings;
   physics::PhysicsOptions physics;
-  scene::Scanner scanner;
+  ScannerOptions scanner;
   SequenceOptions sequence;
-  std::vector<scene::Scanner> scanners;  ///< several, merged into one cloud, instead of `scanner`
+  std::vector<ScannerOptions> scanners;  ///< several, merged into one cloud, instead of `scanner`
   OutputOptions output;
+  Distributions distributions;  ///< numbers that are drawn for each scene or tube (docs/randomization.md)
 
-  /// The scanners that look at each scene: `scanners`, or `scanner` alone.
-  std::vector<scene::Scanner> all_scanners() const { return scanners.empty() ? std::vector{scanner} : scanners; }
+  /// The scanners that look at each scene: `scanners`, or `scanner` alone; those that look at a point are turned to it.
+  std::vector<scene::Scanner> all_scanners() const;
 };
 
 void describe(Fields& fields, DatasetConfig& config);
@@ -64,6 +71,8 @@ DatasetConfig load_config(const std::string& path);
 void check(const DatasetConfig& config, const KeyPlaces& places);
 /// The same but for what only the version that runs, and this machine, must fit: of a data set that is there already.
 void check_of_any_version(const DatasetConfig& config, const KeyPlaces& places);
+/// The same of the values that the fields have, whatever is drawn for them.
+void check_numbers(const DatasetConfig& config, const KeyPlaces& places);
 
 /// The configuration as a file that load_config reads back to the same values.
 std::string format_config(const DatasetConfig& config);

@@ -83,6 +83,10 @@ struct Scanner {
   Pose world_from_scanner() const;
 };
 
+/// The rotation_deg with which the optical axis of a scanner at `position` meets `target`, another point of the world
+/// (metres): image x is level and image y points down; straight down or up, image x is along the world's.
+Vec3 rotation_deg_towards(const Vec3& target, const Vec3& position);
+
 struct PlacedTube {
   tube::Tube tube;
   Pose world_from_tube = Pose::Identity();

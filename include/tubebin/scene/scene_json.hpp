@@ -24,6 +24,7 @@ struct SceneRecord {
   std::vector<Contact> contacts;
   std::vector<PixelWindow> further_windows = {};  ///< of the scene's further scanners
   std::optional<PileRelations> relations;         ///< nothing in files of versions that did not write them
+  DrawnNumbers drawn = {};                        ///< of the configuration, for the scene; tubes have their own
   std::optional<Lift> lift = {};                  ///< where the pile is what was left after a tube was lifted out
 };
 

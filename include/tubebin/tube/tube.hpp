@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tubebin/core/geometry.hpp"
+#include "tubebin/core/distribution.hpp"
 
 namespace tubebin::tube {
 
@@ -26,7 +26,8 @@ struct Tube {
   double mass = 0.0;            ///< kilograms
   std::vector<Vec3> nodes;      ///< metres, in the tube's own frame
   std::vector<Cylinder> cylinders;
-  std::string kind = {};  ///< its kind's name in a mixed bin; empty where all tubes are of one kind
+  std::string kind = {};    ///< its kind's name in a mixed bin; empty where all tubes are of one kind
+  DrawnNumbers drawn = {};  ///< of its options, those that were drawn for it alone
 
   double radius_of(const Cylinder& cylinder) const { return cylinder.radius > 0.0 ? cylinder.radius : radius; }
   /// Of the joint's sphere at each node: that of the thickest cylinder there; the tube's at a node alone.

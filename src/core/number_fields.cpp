@@ -1,10 +1,13 @@
-#include "calibration/number_fields.hpp"
+#include "core/number_fields.hpp"
 
-namespace tubebin::calibration {
+#include <fmt/format.h>
+
+namespace tubebin {
 namespace {
 
 class NumberFinder : public Fields {
  public:
+  using Fields::vector;
   std::map<std::string, NumberField> found;
 
   void number(const char* key, double& value, Limits limits, const char*, const char*) override {
@@ -16,7 +19,9 @@ class NumberFinder : public Fields {
   void seed(const char*, std::uint64_t&, const char*) override {}
   void flag(const char*, bool&, const char*) override {}
   void text(const char*, std::string&, const char*) override {}
-  void vector(const char*, Vec3&, Limits, const char*, const char*) override {}
+  void vector(const char* key, Vec3& value, Limits limits, const char* unit, const char* doc) override {
+    for (int i = 0; i < 3; ++i) number(fmt::format("{}[{}]", key, i).c_str(), value[i], limits, unit, doc);
+  }
   void integers(const char*, std::vector<int>&, Limits, const char*) override {}
   void choice(const char*, int&, const std::vector<std::string>&, const char*) override {}
   void group(const char* key, const char*, const std::function<void(Fields&)>& describe_inner) override {
@@ -25,8 +30,11 @@ class NumberFinder : public Fields {
     describe_inner(*this);
     prefix_ = outer;
   }
-  void list(const char*, const char*, std::size_t, const std::function<void(std::size_t)>&,
-            const std::function<void(Fields&, std::size_t)>&) override {}
+  void list(const char* key, const char*, std::size_t size, const std::function<void(std::size_t)>&,
+            const std::function<void(Fields&, std::size_t)>& describe_element) override {
+    for (std::size_t i = 0; i < size; ++i)
+      group(fmt::format("{}[{}]", key, i).c_str(), "", [&](Fields& fields) { describe_element(fields, i); });
+  }
 
  private:
   std::string prefix_;
@@ -40,4 +48,4 @@ std::map<std::string, NumberField> number_fields(const std::function<void(Fields
   return std::move(finder.found);
 }
 
-}  // namespace tubebin::calibration
+}  // namespace tubebin
