@@ -27,6 +27,8 @@ Examples:
       three scenes each of 1, 5, 10, 11 and 12 tubes, with pictures
   generate_dataset config/set_a.yaml --output emptied --tubes 10 --empty 9
       piles that are taken apart tube by tube: A10/007/step_00 to A10/007/step_09
+  generate_dataset config/randomized.yaml --output random --tubes 10 --cases 100
+      scenes whose tubes, friction, scanner and noise differ, as networks are trained on (docs/randomization.md)
   generate_dataset config/set_a.yaml --output /shared/dataset_a --shard 2/4
       the second of four shards, which four machines make at once; in a job array of Slurm, AWS Batch or Kubernetes,
       --shard is not needed (docs/scale_out.md)

@@ -18,14 +18,17 @@ std::vector<std::string> names_of(const DatasetFiles& files) {
   return names;
 }
 
-cloud::Cloud read_cloud(const DatasetFiles& files, const std::string& name) {
-  const std::string file = files.cloud_of(name);
-  return cloud::parse_cloud(files.read(name, file), files.place(name, file));
-}
-
 std::optional<Scene> read_scene(const DatasetFiles& files, const std::string& name) {
   if (!files.has(name, "scene.json")) return std::nullopt;
   return Scene{scene::parse_scene_json(files.read(name, "scene.json"), files.place(name, "scene.json"))};
+}
+
+/// In the world frame and metres.
+cloud::Cloud read_cloud(const DatasetFiles& files, const std::string& name) {
+  const std::string file = files.cloud_of(name);
+  const std::optional<Scene> scene = read_scene(files, name);
+  return scene::parse_scene_cloud(files.read(name, file), files.place(name, file),
+                                  scene ? scene->record : scene::SceneRecord{});
 }
 
 }  // namespace

@@ -172,6 +172,7 @@ void describe(Fields& fields, DatasetConfig& config) {
   fields.group("output", "what is written for each scene", [&](Fields& inner) {
     inner.choice("format", config.output.format, {"pcd_binary", "pcd_compressed", "pcd_ascii", "ply_binary"},
                  "file format of the cloud");
+    describe(inner, config.output.space);
     inner.flag(
         "clean_cloud", config.output.clean_cloud,
         "also write cloud_clean, the scene as exact rays see it, pixel by pixel the twin of a cloud with effects");

@@ -75,6 +75,7 @@ GeneratedScene show_pile(const Piles& piles, const SceneId& id) {
                            .contacts = pile.contacts,
                            .further_windows = std::move(scanned.further_windows),
                            .relations = std::move(relations),
+                           .space = config.output.space,
                            .drawn = piles.drawn,
                            .lift = pile.lift};
   result.content.cloud = std::move(scanned.cloud);

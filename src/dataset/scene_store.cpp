@@ -42,18 +42,18 @@ std::string SceneStore::clean_cloud_name() const { return std::string("cloud_cle
 
 std::function<std::map<ConfinedPath, FileRecord>()> SceneStore::begin_write(const ConfinedPath& scene_name,
                                                                             const SceneContent& content) const {
+  std::map<std::string, cloud::Cloud> clouds;
+  clouds[cloud_name()] = scene::in_space(content.cloud, content.record.space);
+  if (content.clean_cloud) clouds[clean_cloud_name()] = scene::in_space(*content.clean_cloud, content.record.space);
+
   std::map<std::string, std::string> files = content.images;
-  files[cloud_name()] = cloud::format_cloud(content.cloud, options_.format);
-  if (content.clean_cloud) files[clean_cloud_name()] = cloud::format_cloud(*content.clean_cloud, options_.format);
+  for (const auto& [name, cloud] : clouds) files[name] = cloud::format_cloud(cloud, options_.format);
   files["scene.json"] = scene::format_scene_json(content.record);
   files["tubes.txt"] = scene::format_tubes_txt(content.record.scene.tubes);
 
   const std::function<void()> finish = jobs::begin_whole_folder(folder_, scene_name, files);
-  if (options_.format == cloud::CloudFormat::pcd_compressed) {
-    check_reads_back(files[cloud_name()], content.cloud, path(scene_name) + "/" + cloud_name());
-    if (content.clean_cloud)
-      check_reads_back(files[clean_cloud_name()], *content.clean_cloud, path(scene_name) + "/" + clean_cloud_name());
-  }
+  if (options_.format == cloud::CloudFormat::pcd_compressed)
+    for (const auto& [name, cloud] : clouds) check_reads_back(files[name], cloud, path(scene_name) + "/" + name);
   std::map<ConfinedPath, FileRecord> records;
   for (const auto& [name, bytes] : files) records[name] = record_bytes(bytes);
   return [finish, records] {

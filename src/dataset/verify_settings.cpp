@@ -31,6 +31,8 @@ bool has_numbers_of(const tube::Tube& tube, const tube::Tube& expected) {
 std::vector<std::string> check_settings(const scene::SceneRecord& scene, const DatasetConfig& config) {
   std::vector<std::string> problems;
   if (!has_scanners_of(scene.scene, config)) problems.emplace_back("scene.json has other scanners than config.yaml");
+  if (scene.space != config.output.space)
+    problems.emplace_back("scene.json has another frame or unit of the cloud than config.yaml");
   if (config.distributions.empty() || scene.lift) return problems;
   if (scene.drawn != draw_scene_numbers(config, scene.seed))
     return {"scene.json has other drawn numbers than its seed gives"};

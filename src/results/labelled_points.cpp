@@ -27,15 +27,19 @@ std::optional<evaluation::LabelledPoints> kept_points(const evaluation::RunScore
   const std::string cloud = dataset.cloud_of(run.key.scene);
   if (cloud.empty()) return std::nullopt;
   const std::string path = dataset.place(run.key.scene, cloud);
-  cloud::Cloud filtered = cloud::parse_cloud(dataset.read(run.key.scene, cloud), path);
+  const scene::SceneRecord record =
+      scene::parse_scene_json(dataset.read(run.key.scene, "scene.json"), dataset.place(run.key.scene, "scene.json"));
+  // Clouds of model_tubes are in the world frame; another program's are as the cloud that it was given.
+  const auto parse_kept = [&](const std::string& kept) {
+    return run.folder.empty() ? scene::parse_scene_cloud(read_file(kept), kept, record) : cloud::read_cloud(kept);
+  };
+  cloud::Cloud filtered = scene::parse_scene_cloud(dataset.read(run.key.scene, cloud), path, record);
   if (filtered.labels.empty()) return std::nullopt;
   filtered.colors.clear();
   if (run.filtered != path)
-    filtered = evaluation::filtered_truth({filtered, path}, {cloud::read_cloud(run.filtered), run.filtered}).cloud;
-  const cloud::Cloud labeled = cloud::read_cloud(run.labeled);
+    filtered = evaluation::filtered_truth({filtered, path}, {parse_kept(run.filtered), run.filtered}).cloud;
+  const cloud::Cloud labeled = parse_kept(run.labeled);
   const evaluation::PairedIds pairs = evaluation::pair_clouds({filtered, run.filtered}, {labeled, run.labeled});
-  const scene::SceneRecord record =
-      scene::parse_scene_json(dataset.read(run.key.scene, "scene.json"), dataset.place(run.key.scene, "scene.json"));
   evaluation::LabelledPoints result;
   result.scanner = record.scene.scanner;
   result.true_tubes = evaluation::tube_lines(record.scene);

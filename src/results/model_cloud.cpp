@@ -9,6 +9,7 @@
 
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/cloud/label_colors.hpp"
+#include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/file_record.hpp"
 #include "tubebin/core/path_status.hpp"
 
@@ -95,9 +96,13 @@ ModelConfig load_model_config(const std::string& path) {
 
 CloudToModel read_cloud_to_model(const std::string& path, double scale) {
   const auto start = std::chrono::steady_clock::now();
-  CloudToModel input{.path = path, .cloud = cloud::read_cloud(path, scale), .scene = std::nullopt, .hashes = {}};
+  CloudToModel input{.path = path, .cloud = {}, .scene = std::nullopt, .hashes = {}};
   if (const std::string scene = (fs::path(path).parent_path() / "scene.json").string(); path_exists(scene))
     input.scene = scene::read_scene_json(scene);
+  // scene.json knows the unit: whoever tells it, too, tells the same.
+  if (input.scene && (scale == 1.0 || scale == input.scene->space.metres_per_unit()))
+    input.cloud = scene::parse_scene_cloud(read_file(path), path, *input.scene);
+  else input.cloud = cloud::read_cloud(path, scale);
   input.read_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return input;
 }
@@ -107,13 +112,16 @@ CloudToModel read_cloud_to_model(const scene::DatasetFiles& files, const CloudFi
   const std::string path = files.place(cloud.scene, cloud.file);
   const std::string bytes = files.read(cloud.scene, cloud.file);
   CloudToModel input{.path = path,
-                     .cloud = cloud::parse_cloud(bytes, path),
+                     .cloud = {},
                      .scene = {},
                      .hashes = {.cloud_xxh128 = record_bytes(bytes).xxh128, .scene_json_xxh128 = ""}};
   if (files.has(cloud.scene, "scene.json")) {
     const std::string text = files.read(cloud.scene, "scene.json");
     input.hashes.scene_json_xxh128 = record_bytes(text).xxh128;
     input.scene = scene::parse_scene_json(text, files.place(cloud.scene, "scene.json"));
+  }
+  input.cloud = scene::parse_scene_cloud(bytes, path, input.scene.value_or(scene::SceneRecord{}));
+  if (input.scene) {
     scene::require_same_scene(*input.scene, input.cloud, cloud.scene, files.place(cloud.scene, "scene.json"));
   }
   input.read_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

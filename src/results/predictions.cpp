@@ -8,7 +8,7 @@
 #include <set>
 
 #include "evaluation/parallel.hpp"
-#include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/core/atomic_file.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/path_status.hpp"
 #include "tubebin/evaluation/filtered_truth.hpp"
@@ -65,17 +65,28 @@ void keep_field(cloud::Cloud& cloud, evaluation::SegmentField field, const std::
   other.clear();
 }
 
+std::optional<scene::SceneRecord> read_record(const scene::DatasetFiles& dataset, const std::string& scene) {
+  if (!dataset.has(scene, "scene.json")) return std::nullopt;
+  return scene::parse_scene_json(dataset.read(scene, "scene.json"), dataset.place(scene, "scene.json"));
+}
+
 evaluation::RunScore score_scene(const scene::DatasetFiles& dataset, const std::string& scene,
                                  const PredictionFiles& files, evaluation::RunKey key, evaluation::SegmentField field) {
   const std::string cloud = dataset.cloud_of(scene), cloud_path = dataset.place(scene, cloud);
-  evaluation::FilteredTruth truth{
-      .cloud = check_ground_truth(cloud::parse_cloud(dataset.read(scene, cloud), cloud_path), cloud_path)};
+  const std::optional<scene::SceneRecord> record = read_record(dataset, scene);
+  // A program's clouds are in the frame and unit of the cloud that it was given.
+  const auto parse = [&](const std::string& bytes, const std::string& path) {
+    return scene::parse_scene_cloud(bytes, path, record.value_or(scene::SceneRecord{}));
+  };
+  evaluation::FilteredTruth truth{.cloud =
+                                      check_ground_truth(parse(dataset.read(scene, cloud), cloud_path), cloud_path)};
   if (!files.filtered.empty())
-    truth = evaluation::filtered_truth({truth.cloud, cloud_path}, {cloud::read_cloud(files.filtered), files.filtered});
+    truth = evaluation::filtered_truth({truth.cloud, cloud_path},
+                                       {parse(read_file(files.filtered), files.filtered), files.filtered});
   const std::string& truth_path = files.filtered.empty() ? cloud_path : files.filtered;
   cloud::Cloud labeled;
   if (!files.labeled.empty()) {
-    labeled = cloud::read_cloud(files.labeled);
+    labeled = parse(read_file(files.labeled), files.labeled);
     keep_field(labeled, field, files.labeled);
   }
   const evaluation::PairedIds pairs = evaluation::pair_clouds({truth.cloud, truth_path}, {labeled, files.labeled});
@@ -84,13 +95,11 @@ evaluation::RunScore score_scene(const scene::DatasetFiles& dataset, const std::
       contingency, files.filtered.empty() ? evaluation::BinPoints::left_out : evaluation::BinPoints::counted);
 
   std::optional<evaluation::SceneTruth> scene_truth;
-  if (dataset.has(scene, "scene.json")) {
-    const scene::SceneRecord record =
-        scene::parse_scene_json(dataset.read(scene, "scene.json"), dataset.place(scene, "scene.json"));
+  if (record) {
     if (files.filtered.empty())
-      scene::require_same_scene(record, truth.cloud, scene, dataset.place(scene, "scene.json"));
-    key.tubes = static_cast<int>(record.scene.tubes.size());
-    scene_truth.emplace(record.scene);
+      scene::require_same_scene(*record, truth.cloud, scene, dataset.place(scene, "scene.json"));
+    key.tubes = static_cast<int>(record->scene.tubes.size());
+    scene_truth.emplace(record->scene);
   }
   evaluation::RunScore run =
       evaluation::score_run(key, contingency, matching, scene_truth ? &*scene_truth : nullptr, {});

@@ -4,6 +4,7 @@
 #include "core/json_reader.hpp"
 #include "scene/pixel_limit.hpp"
 #include "scene/scene_json_format.hpp"
+#include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
 #include "tubebin/scene/camera.hpp"
 #include "tubebin/scene/scene_json.hpp"
@@ -220,6 +221,7 @@ SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
   SceneRecord record;
   record.id = root.at("id").text();
   record.seed = root.at("seed").whole(0, std::numeric_limits<std::uint64_t>::max());
+  if (root.has("cloud")) root.at("cloud").fields([&](Fields& fields) { describe(fields, record.space); });
   if (root.has("drawn")) record.drawn = root.at("drawn").numbers();
   record.scene.bin = read_bin(root.at("bin"));
   record.colors.push_back(read_color(root.at("bin").at("color")));
@@ -244,6 +246,11 @@ SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
 }
 
 SceneRecord read_scene_json(const std::string& path) { return parse_scene_json(read_file(path), path); }
+
+cloud::Cloud parse_scene_cloud(std::string_view bytes, const std::string& name, const SceneRecord& record) {
+  return in_world(cloud::parse_cloud(bytes, name, record.space.metres_per_unit()), record.space,
+                  record.scene.scanner.world_from_scanner());
+}
 
 void require_same_scene(const SceneRecord& record, const cloud::Cloud& cloud, const std::string& name,
                         const std::string& place) {

@@ -140,6 +140,10 @@ std::string format_scene_json(const SceneRecord& record) {
                       {"units", {{"length", "m"}, {"mass", "kg"}, {"angle_deg", "degree"}, {"image", "pixel"}}},
                       {"id", record.id},
                       {"seed", record.seed}};
+  if (record.space != CloudSpace{}) {
+    CloudSpace space = record.space;
+    json["cloud"] = fields_to_json([&](Fields& fields) { describe(fields, space); });
+  }
   if (!record.drawn.empty()) json["drawn"] = record.drawn;
   json.update({{"bin", bin_to_json(record.scene.bin, record.colors[0])},
                {"scanner", scanner_to_json(record.scene.scanner, record.window)},

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
+
 #include "core/number_fields.hpp"
 #include "support/program.hpp"
 
@@ -127,7 +129,8 @@ TEST(LookAt, MeetsThePointWithALevelImage) {
   for (int i = 0; i < 1000; ++i) {
     const Vec3 position(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2));
     const Vec3 target(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2));
-    scene::Scanner scanner{.position = position};
+    scene::Scanner scanner;
+    scanner.position = position;
     scanner.rotation_deg = scene::rotation_deg_towards(target, position);
     const Pose scanner_from_world = scanner.world_from_scanner().inverse();
     const Vec3 seen = scanner_from_world * target;

@@ -8,6 +8,7 @@
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/yaml.hpp"
 #include "tubebin/physics/lift.hpp"
+#include "tubebin/scene/cloud_space.hpp"
 #include "tubebin/scene/place_surroundings.hpp"
 #include "tubebin/tube/tube_generator.hpp"
 
@@ -15,6 +16,7 @@ namespace tubebin::dataset {
 
 struct OutputOptions {
   cloud::CloudFormat format = cloud::CloudFormat::pcd_binary;
+  scene::CloudSpace space;
   bool clean_cloud = false;  ///< the noise-free twin beside each cloud
   bool preview = false;      ///< a rendered picture and the ground-truth image beside each cloud
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tubebin/cloud/cloud.hpp"
+#include "tubebin/scene/cloud_space.hpp"
 #include "tubebin/scene/lift.hpp"
 #include "tubebin/scene/pile_relations.hpp"
 
@@ -24,6 +25,7 @@ struct SceneRecord {
   std::vector<Contact> contacts;
   std::vector<PixelWindow> further_windows = {};  ///< of the scene's further scanners
   std::optional<PileRelations> relations;         ///< nothing in files of versions that did not write them
+  CloudSpace space = {};                          ///< of the cloud's file
   DrawnNumbers drawn = {};                        ///< of the configuration, for the scene; tubes have their own
   std::optional<Lift> lift = {};                  ///< where the pile is what was left after a tube was lifted out
 };
@@ -42,6 +44,9 @@ SceneRecord read_scene_json(const std::string& path);
 /// of each tube as the record says.
 void require_same_scene(const SceneRecord& record, const cloud::Cloud& cloud, const std::string& name,
                         const std::string& place);
+
+/// The scene's cloud from the bytes of its file, in the world frame and metres. Throws as cloud::parse_cloud.
+cloud::Cloud parse_scene_cloud(std::string_view bytes, const std::string& name, const SceneRecord& record);
 
 /// As read_scene_json, from a text; `name` stands for the file in messages.
 SceneRecord parse_scene_json(std::string_view text, const std::string& name);
