@@ -50,25 +50,6 @@ void check_version(const DatasetConfig& config, const KeyPlaces& places) {
                                             config.tool_version, tool_version()));
 }
 
-void check_look_at(const ScannerOptions& scanner, const KeyPlaces& places, const std::string& prefix) {
-  if (!scanner.look_at) return;
-  if (!scanner.rotation_deg.isZero(0.0))
-    places.fail(prefix + ".rotation_deg", "look_at says where the scanner looks; valid: one of the two");
-  if (*scanner.look_at == scanner.position)
-    places.fail(prefix + ".look_at", "is the scanner's position; valid: another point");
-}
-
-void check_scanner(const ScannerOptions& scanner, const scene::Bin& bin, const KeyPlaces& places,
-                   const std::string& prefix) {
-  check(scanner, places, prefix);
-  check_look_at(scanner, places, prefix);
-  for (const scene::BinPart& part : scene::bin_parts(bin))
-    if (part.box.contains(part.world_from_part.inverse() * scanner.position))
-      places.fail(prefix + ".position",
-                  fmt::format("[{}, {}, {}] m is inside the bin's floor or a wall of it; valid: a place in the open",
-                              scanner.position.x(), scanner.position.y(), scanner.position.z()));
-}
-
 void check_preview(const DatasetConfig& config, const KeyPlaces& places) {
   if (config.output.preview && !render::can_render())
     places.fail("output.preview",
@@ -85,16 +66,6 @@ int parse_count(const std::string& text, const std::string& whole) {
         "as 1,5,10-15",
         text, whole, kTubeCountLimits.min, kTubeCountLimits.max);
   return value;
-}
-
-void describe_with_effects(Fields& fields, ScannerOptions& scanner) {
-  describe(fields, scanner);
-  fields.vector(
-      "look_at", scanner.look_at, {-1000.0, 1000.0}, "m",
-      "instead of rotation_deg: the point of the world that the optical axis meets; image x is level, and along "
-      "the bin where the scanner looks straight down");
-  fields.group("effects", "what a real scanner adds (docs/scanner_effects.md); all off: exact rays",
-               [&](Fields& effects) { describe(effects, scanner.effects); });
 }
 
 /// The scanners' numbers are drawn from what those of `scanner` are.
@@ -115,22 +86,17 @@ void describe_scanners(Fields& fields, DatasetConfig& config) {
         config.scanners.assign(size, config.scanner);
         inherit_distributions(config);
       },
-      [&](Fields& inner, std::size_t i) {
-        describe_with_effects(inner, i < config.scanners.size() ? config.scanners[i] : fresh);
-      });
+      [&](Fields& inner, std::size_t i) { describe(inner, i < config.scanners.size() ? config.scanners[i] : fresh); });
   if (config.scanners.empty())
-    fields.group("scanner", "the virtual 3D scanner",
-                 [&](Fields& inner) { describe_with_effects(inner, config.scanner); });
+    fields.group("scanner", "the virtual 3D scanner", [&](Fields& inner) { describe(inner, config.scanner); });
 }
 
 }  // namespace
 
 std::vector<scene::Scanner> DatasetConfig::all_scanners() const {
   std::vector<scene::Scanner> all;
-  for (const ScannerOptions& options : scanners.empty() ? std::vector{scanner} : scanners) {
-    all.push_back(options);
-    if (options.look_at) all.back().rotation_deg = scene::rotation_deg_towards(*options.look_at, options.position);
-  }
+  for (const ScannerOptions& options : scanners.empty() ? std::vector{scanner} : scanners)
+    all.push_back(options.posed());
   return all;
 }
 
@@ -205,9 +171,9 @@ void check_numbers(const DatasetConfig& config, const KeyPlaces& places) {
   check(config.bin, places, "bin");
   check(config.surroundings, config.bin, places, "surroundings");
   check(config.physics, places, "physics");
-  if (config.scanners.empty()) check_scanner(config.scanner, config.bin, places, "scanner");
+  if (config.scanners.empty()) check(config.scanner, config.bin, places, "scanner");
   for (std::size_t i = 0; i < config.scanners.size(); ++i)
-    check_scanner(config.scanners[i], config.bin, places, fmt::format("scanners[{}]", i));
+    check(config.scanners[i], config.bin, places, fmt::format("scanners[{}]", i));
 }
 
 DatasetConfig load_config(const std::string& path) {

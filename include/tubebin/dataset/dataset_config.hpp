@@ -1,12 +1,12 @@
 /// What one data set is made from: everything that decides its bytes, and how many scenes of it are wanted.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/yaml.hpp"
+#include "tubebin/dataset/scanner_options.hpp"
 #include "tubebin/physics/lift.hpp"
 #include "tubebin/scene/cloud_space.hpp"
 #include "tubebin/scene/place_surroundings.hpp"
@@ -32,11 +32,6 @@ struct SequenceOptions {
   int lifts = 0;  ///< at most; one tube stays
   LiftRule rule = LiftRule::top;
   physics::LiftOptions lift;
-};
-
-/// A scanner whose direction may be told by what it looks at.
-struct ScannerOptions : scene::Scanner {
-  std::optional<Vec3> look_at;  ///< metres, world frame; instead of rotation_deg
 };
 
 struct DatasetConfig {
