@@ -31,10 +31,8 @@ double read_number(const YamlValue& value, Limits limits, const char* unit, bool
 void check_bounds(const YamlValue& list, const Distribution& distribution, Limits limits, const char* unit) {
   const std::vector<double>& numbers = distribution.numbers;
   if (distribution.form == Form::normal && (distribution.low() < limits.min || distribution.high() > limits.max))
-    list.fail(
-        fmt::format("a mean and a standard deviation of which three, within which it is drawn ({} to {}), stay "
-                    "within {}{}{}",
-                    distribution.low(), distribution.high(), limits_text(limits), *unit ? " " : "", unit));
+    list.fail(fmt::format("three standard deviations to either side of the mean ({} to {}) that stay within {}{}{}",
+                          distribution.low(), distribution.high(), limits_text(limits), *unit ? " " : "", unit));
   if (distribution.form == Form::log_uniform && numbers[0] <= 0.0) list.fail("numbers above 0");
   const bool is_range = distribution.form == Form::uniform || distribution.form == Form::log_uniform;
   if (is_range && numbers[0] > numbers[1]) list.fail("the lower number first");

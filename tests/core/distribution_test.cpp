@@ -82,26 +82,26 @@ TEST(Distribution, ChoiceAndWholeNumbersAreEachAsLikely) {
   }
 }
 
-struct Options {
+struct DrawnOptions {
   double radius = 1.0;
   int count = 7;
   Vec3 place = Vec3::Zero();
   Distributions distributions;
 };
 
-void describe(Fields& fields, Options& options) {
+void describe(Fields& fields, DrawnOptions& options) {
   fields.randomized(options.distributions);
   fields.number("radius", options.radius, {0.5, 10.0}, "m", "of it");
   fields.integer("count", options.count, {1, 9}, "", "of them");
   fields.vector("place", options.place, {-10.0, 10.0}, "m", "of all");
 }
 
-std::function<void(Fields&)> fields_of(Options& options) {
+std::function<void(Fields&)> fields_of(DrawnOptions& options) {
   return [&](Fields& fields) { describe(fields, options); };
 }
 
 TEST(DistributionYaml, ReadsBackAsItIsWritten) {
-  Options options;
+  DrawnOptions options;
   read_yaml_text(
       "radius: {log_uniform: [1, 2.5], per: tube}\ncount: {choice: [2, 9]}\nplace: [0, {normal: [1, 0.1]}, 2]\n", "o",
       fields_of(options));
@@ -109,13 +109,13 @@ TEST(DistributionYaml, ReadsBackAsItIsWritten) {
   const std::string text = write_yaml(fields_of(options));
   EXPECT_THAT(text, HasSubstr("radius: {log_uniform: [1, 2.5], per: tube}  #"));
   EXPECT_THAT(text, HasSubstr("place: [0, {normal: [1, 0.1]}, 2]  #"));
-  Options back;
+  DrawnOptions back;
   read_yaml_text(text, "o", fields_of(back));
   EXPECT_EQ(write_yaml(fields_of(back)), text);
 }
 
 TEST(DistributionYaml, ANumberReplacesWhatAnIncludedFileDraws) {
-  Options options;
+  DrawnOptions options;
   read_yaml_text("radius: {uniform: [1, 2]}\n", "included", fields_of(options));
   read_yaml_text("radius: 3\n", "own", fields_of(options));
   EXPECT_TRUE(options.distributions.empty());
@@ -124,7 +124,7 @@ TEST(DistributionYaml, ANumberReplacesWhatAnIncludedFileDraws) {
 
 TEST(DistributionYaml, NamesPlaceValueAndWhatIsValid) {
   const auto problem = [](const std::string& text) -> std::string {
-    Options options;
+    DrawnOptions options;
     try {
       read_yaml_text(text, "o", fields_of(options));
     } catch (const ConfigError& error) {

@@ -16,15 +16,15 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Key;
 
-DatasetConfig parse(const std::string& text) {
+DatasetConfig parsed(const std::string& text) {
   DatasetConfig config;
   check(config, read_yaml_text(text, "c.yaml", fields_of(config)));
   return config;
 }
 
-std::string refusal_of(const std::string& text) {
+std::string problem_of(const std::string& text) {
   try {
-    parse(text);
+    parsed(text);
   } catch (const ConfigError& error) {
     return error.what();
   }
@@ -37,7 +37,7 @@ std::vector<tube::Tube> tubes_of(const DatasetConfig& config, std::uint64_t seed
 }
 
 TEST(Randomization, TubesNumbersAreDrawnPerTubeAndAllOthersPerScene) {
-  const DatasetConfig config = parse(
+  const DatasetConfig config = parsed(
       "tube: {radius: {uniform: [0.008, 0.016]}, mass: {uniform: [0.1, 0.2], per: scene}}\n"
       "physics: {friction_tube: {uniform: [0.5, 1]}}\nscanner: {position: [0, {uniform: [-1, 1]}, 2]}\n");
   const DrawnNumbers scene = draw_scene_numbers(config, 5);
@@ -57,8 +57,8 @@ TEST(Randomization, TubesNumbersAreDrawnPerTubeAndAllOthersPerScene) {
 
 TEST(Randomization, TheSameSeedGivesTheSameAndAnotherRangeLeavesTheOthers) {
   const std::string friction = "physics: {friction_tube: {uniform: [0.5, 1]}";
-  const DatasetConfig one = parse(friction + "}\n");
-  const DatasetConfig two = parse(friction + ", friction_bin: {uniform: [0.5, 1]}}\n");
+  const DatasetConfig one = parsed(friction + "}\n");
+  const DatasetConfig two = parsed(friction + ", friction_bin: {uniform: [0.5, 1]}}\n");
   const DrawnNumbers drawn = draw_scene_numbers(one, 7);
   EXPECT_EQ(draw_scene_numbers(one, 7), drawn);
   EXPECT_NE(draw_scene_numbers(one, 8), drawn);
@@ -69,8 +69,8 @@ TEST(Randomization, TheSameSeedGivesTheSameAndAnotherRangeLeavesTheOthers) {
 }
 
 TEST(Randomization, ShapesStayWhereARadiusIsDrawn) {
-  const std::vector<tube::Tube> plain = tubes_of(parse("seed: 1\n"), 3);
-  const std::vector<tube::Tube> drawn = tubes_of(parse("tube: {radius: {uniform: [0.008, 0.016]}}\n"), 3);
+  const std::vector<tube::Tube> plain = tubes_of(parsed("seed: 1\n"), 3);
+  const std::vector<tube::Tube> drawn = tubes_of(parsed("tube: {radius: {uniform: [0.008, 0.016]}}\n"), 3);
   for (std::size_t k = 0; k < plain.size(); ++k) {
     EXPECT_EQ(drawn[k].nodes, plain[k].nodes);
     EXPECT_THAT(plain[k].drawn, IsEmpty());
@@ -78,7 +78,7 @@ TEST(Randomization, ShapesStayWhereARadiusIsDrawn) {
 }
 
 TEST(Randomization, KindsHaveRangesOfTheirOwn) {
-  const DatasetConfig config = parse(
+  const DatasetConfig config = parsed(
       "tubes: [20]\nkinds:\n  - {name: thin, share: 1, radius: {uniform: [0.005, 0.006]}}\n"
       "  - {name: ring, share: 1, shape: ring, radius: 0.009, cylinder_count: {choice: [12, 24]}}\n");
   std::set<std::size_t> corners;
@@ -101,27 +101,27 @@ TEST(Randomization, ScannersTakeTheRangesOfAnIncludedScanner) {
 }
 
 TEST(Randomization, RangesThatContradictEachOtherAreRefusedAtTheirEnds) {
-  EXPECT_THAT(refusal_of("tube: {radius: {uniform: [0.004, 0.016]}, wall_thickness: {uniform: [0.001, 0.005]}}\n"),
+  EXPECT_THAT(problem_of("tube: {radius: {uniform: [0.004, 0.016]}, wall_thickness: {uniform: [0.001, 0.005]}}\n"),
               HasSubstr("c.yaml:1:59: tube.wall_thickness: 0.005 m leaves no bore in a radius of 0.004 m"));
-  EXPECT_THAT(refusal_of("tube: {length: {uniform: [0.05, 0.5]}}\n"), HasSubstr("length = 0.05 m"));
-  EXPECT_THAT(refusal_of("scanner: {range_max: {uniform: [0.05, 3]}}\n"), HasSubstr("scanner.range_max: 0.05 m"));
-  EXPECT_THAT(refusal_of("scanner: {position: [0, 0, {uniform: [-0.01, 2]}]}\n"), HasSubstr("scanner.position"));
-  EXPECT_EQ(refusal_of("tube: {radius: {uniform: [0.006, 0.016]}, wall_thickness: {uniform: [0.001, 0.005]}}\n"),
+  EXPECT_THAT(problem_of("tube: {length: {uniform: [0.05, 0.5]}}\n"), HasSubstr("length = 0.05 m"));
+  EXPECT_THAT(problem_of("scanner: {range_max: {uniform: [0.05, 3]}}\n"), HasSubstr("scanner.range_max: 0.05 m"));
+  EXPECT_THAT(problem_of("scanner: {position: [0, 0, {uniform: [-0.01, 2]}]}\n"), HasSubstr("scanner.position"));
+  EXPECT_EQ(problem_of("tube: {radius: {uniform: [0.006, 0.016]}, wall_thickness: {uniform: [0.001, 0.005]}}\n"),
             "accepted");
 }
 
 TEST(Randomization, WhatIsOneForAllScenesIsRefused) {
   const std::string reason = "valid: one number, for all scenes";
-  EXPECT_THAT(refusal_of("cases: {uniform: [1, 5]}\n"), HasSubstr("c.yaml:1:8: cases: '{uniform: [1, 5]}' is not"));
-  EXPECT_THAT(refusal_of("attempts_max: {uniform: [1, 5]}\n"), HasSubstr(reason));
-  EXPECT_THAT(refusal_of("attempt_time_limit: {uniform: [1, 5]}\n"), HasSubstr(reason));
-  EXPECT_THAT(refusal_of("sequence: {lifts: {uniform: [1, 5]}}\n"), HasSubstr(reason));
-  EXPECT_THAT(refusal_of("kinds: [{count: {uniform: [1, 5]}}]\n"), HasSubstr("kinds[0].count: "));
-  EXPECT_THAT(refusal_of("kinds: [{share: {uniform: [1, 5]}}]\n"), HasSubstr(reason));
-  EXPECT_THAT(refusal_of("seed: {uniform: [1, 5]}\n"), HasSubstr("c.yaml:1:7: seed: "));
-  EXPECT_THAT(refusal_of("tubes: [{uniform: [1, 5]}]\n"), HasSubstr("tubes[0]: "));
-  EXPECT_THAT(refusal_of("output: {preview: {choice: [0, 1]}}\n"), HasSubstr("output.preview: "));
-  EXPECT_THAT(refusal_of("physics: {gravity: {uniform: [9, 10], per: tube}}\n"), HasSubstr("since tubes share it"));
+  EXPECT_THAT(problem_of("cases: {uniform: [1, 5]}\n"), HasSubstr("c.yaml:1:8: cases: '{uniform: [1, 5]}' is not"));
+  EXPECT_THAT(problem_of("attempts_max: {uniform: [1, 5]}\n"), HasSubstr(reason));
+  EXPECT_THAT(problem_of("attempt_time_limit: {uniform: [1, 5]}\n"), HasSubstr(reason));
+  EXPECT_THAT(problem_of("sequence: {lifts: {uniform: [1, 5]}}\n"), HasSubstr(reason));
+  EXPECT_THAT(problem_of("kinds: [{count: {uniform: [1, 5]}}]\n"), HasSubstr("kinds[0].count: "));
+  EXPECT_THAT(problem_of("kinds: [{share: {uniform: [1, 5]}}]\n"), HasSubstr(reason));
+  EXPECT_THAT(problem_of("seed: {uniform: [1, 5]}\n"), HasSubstr("c.yaml:1:7: seed: "));
+  EXPECT_THAT(problem_of("tubes: [{uniform: [1, 5]}]\n"), HasSubstr("tubes[0]: "));
+  EXPECT_THAT(problem_of("output: {preview: {choice: [0, 1]}}\n"), HasSubstr("output.preview: "));
+  EXPECT_THAT(problem_of("physics: {gravity: {uniform: [9, 10], per: tube}}\n"), HasSubstr("since tubes share it"));
 }
 
 TEST(LookAt, MeetsThePointWithALevelImage) {
@@ -144,13 +144,13 @@ TEST(LookAt, MeetsThePointWithALevelImage) {
 }
 
 TEST(LookAt, StandsInsteadOfTheRotation) {
-  const DatasetConfig config = parse("scanner: {position: [0, -2, 2], look_at: [0, 0, 0]}\n");
+  const DatasetConfig config = parsed("scanner: {position: [0, -2, 2], look_at: [0, 0, 0]}\n");
   EXPECT_TRUE(config.all_scanners().at(0).rotation_deg.isApprox(Vec3(45, 0, 0), 1e-15));
   EXPECT_THAT(format_config(config), HasSubstr("look_at: [0, 0, 0]"));
   EXPECT_EQ(format_config(DatasetConfig{}).find("look_at"), std::string::npos);
-  EXPECT_THAT(refusal_of("scanner: {rotation_deg: [0, 9, 0], look_at: [0, 0, 0]}\n"),
+  EXPECT_THAT(problem_of("scanner: {rotation_deg: [0, 9, 0], look_at: [0, 0, 0]}\n"),
               HasSubstr("c.yaml:1:25: scanner.rotation_deg: look_at says where the scanner looks"));
-  EXPECT_THAT(refusal_of("scanner: {look_at: [0, 0, 2]}\n"), HasSubstr("scanner.look_at: is the scanner's position"));
+  EXPECT_THAT(problem_of("scanner: {look_at: [0, 0, 2]}\n"), HasSubstr("scanner.look_at: is the scanner's position"));
 }
 
 }  // namespace
