@@ -158,8 +158,8 @@ void check(const DatasetConfig& config, const KeyPlaces& places) {
 }
 
 void check_of_any_version(const DatasetConfig& config, const KeyPlaces& places) {
-  check_numbers(config, places);
-  if (!config.distributions.empty()) check_distributions(config, places);
+  if (config.distributions.empty()) check_numbers(config, places);
+  else check_distributions(config, places);
 }
 
 void check_numbers(const DatasetConfig& config, const KeyPlaces& places) {

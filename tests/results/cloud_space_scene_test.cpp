@@ -57,25 +57,24 @@ TEST_F(CloudSpaces, HaveTheSamePointsAndTruth) {
   const cloud::Cloud world = cloud::read_cloud(file("world", "cloud.pcd"));
   const scene::SceneRecord truth = scene::read_scene_json(file("world", "scene.json"));
   const Pose camera = truth.scene.scanner.world_from_scanner();
-  for (const char* format : {"pcd_binary", "pcd_compressed", "pcd_ascii", "ply_binary"})
-    for (const bool is_camera : {false, true}) {
-      fs::remove_all(folder_ / "data");
-      make("data",
-           fmt::format("clean_cloud: true, format: {}, unit: mm, frame: {}", format, is_camera ? "camera" : "world"));
-      const std::string name = std::string("cloud") + (format[1] == 'l' ? ".ply" : ".pcd");
-      const cloud::Cloud found = cloud::read_cloud(file("data", name));
-      EXPECT_LT(largest_distance(found, 1e-3, is_camera ? camera : Pose::Identity(), world), 1e-6) << format;
-      EXPECT_EQ(found.labels, world.labels);
-      Pose viewpoint = is_camera ? Pose::Identity() : camera;
-      viewpoint.translation() *= 1e3;
-      EXPECT_TRUE(found.world_from_sensor.isApprox(viewpoint, 1e-5)) << format;
-      const ProgramResult verified = run_generate_dataset({"--verify", folder_ / "data"});
-      EXPECT_EQ(verified.exit_code, 0) << verified.out;
-      scene::SceneRecord record = scene::read_scene_json(file("data", "scene.json"));
-      EXPECT_EQ(record.space.unit, scene::CloudSpace::Unit::mm);
-      record.space = {};
-      EXPECT_EQ(scene::format_scene_json(record), read_text(file("world", "scene.json")));
-    }
+  for (const auto& [format, is_camera] : {std::pair("ply_binary", false), std::pair("pcd_compressed", true)}) {
+    fs::remove_all(folder_ / "data");
+    make("data",
+         fmt::format("clean_cloud: true, format: {}, unit: mm, frame: {}", format, is_camera ? "camera" : "world"));
+    const std::string name = std::string("cloud") + (format[1] == 'l' ? ".ply" : ".pcd");
+    const cloud::Cloud found = cloud::read_cloud(file("data", name));
+    EXPECT_LT(largest_distance(found, 1e-3, is_camera ? camera : Pose::Identity(), world), 1e-6) << format;
+    EXPECT_EQ(found.labels, world.labels);
+    Pose viewpoint = is_camera ? Pose::Identity() : camera;
+    viewpoint.translation() *= 1e3;
+    EXPECT_TRUE(found.world_from_sensor.isApprox(viewpoint, 1e-5)) << format;
+    const ProgramResult verified = run_generate_dataset({"--verify", folder_ / "data"});
+    EXPECT_EQ(verified.exit_code, 0) << verified.out;
+    scene::SceneRecord record = scene::read_scene_json(file("data", "scene.json"));
+    EXPECT_EQ(record.space.unit, scene::CloudSpace::Unit::mm);
+    record.space = {};
+    EXPECT_EQ(scene::format_scene_json(record), read_text(file("world", "scene.json")));
+  }
   expect_schema("scene.schema.json", file("data", "scene.json"));
 }
 

@@ -214,7 +214,12 @@ TEST(SceneJson, AgreesWithItsSchema) {
 TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   const json schema = json::parse(read_file(TUBEBIN_SOURCE_DIR "/docs/scene.schema.json"));
   SceneRecord record = make_record(2);
-  for (PlacedTube& tube : record.scene.tubes) tube.tube.kind = "pipe";
+  for (PlacedTube& tube : record.scene.tubes) {
+    tube.tube.kind = "pipe";
+    tube.tube.drawn = {{"tube.mass", 0.1}};
+  }
+  record.drawn = {{"bin.height", 0.2}};
+  record.space.unit = CloudSpace::Unit::mm;
   record.scene.further_scanners = {record.scene.scanner};
   record.further_windows = {record.window};
   record.scene.scanner.effects.projector.enabled = true;  // else the scanner's effects are not there
@@ -229,6 +234,7 @@ TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   };
   const json& top = schema["properties"];
   EXPECT_EQ(keys(scene), keys(top));
+  EXPECT_EQ(keys(scene["cloud"]), keys(top["cloud"]["properties"]));
   EXPECT_EQ(keys(scene["bin"]), keys(top["bin"]["properties"]));
   const json &around = scene["surroundings"], &around_schema = top["surroundings"]["properties"];
   EXPECT_EQ(keys(around), keys(around_schema));
