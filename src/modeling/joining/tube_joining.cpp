@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 
 #include "modeling/joining/branch_links.hpp"
 #include "modeling/joining/chains.hpp"
+#include "modeling/joining/common_shape.hpp"
 #include "modeling/joining/cover_margins.hpp"
+#include "modeling/joining/shape_joining.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -136,9 +140,32 @@ std::vector<TubePath> paths_of(const Cover& cover) {
   return paths;
 }
 
+/// The centrelines of the tubes that are in sight from end to end, or nearly so.
+std::vector<std::vector<Vec3>> whole_tubes(const Cover& cover) {
+  const auto is_seen = [&](std::uint32_t end) { return cover.graph.ends[end].seen_free > 0.5; };
+  std::vector<std::vector<Vec3>> whole;
+  for (const Chain& chain : cover.chains)
+    if (is_seen(chain.first_end) && is_seen(chain.last_end) && chain.bridged < chain.length / 8.0)
+      whole.push_back(path_of(chain, cover.graph).nodes);
+  return whole;
+}
+
+/// Copies of the shape that explains the scene best, where one explains half of all that is seen of tubes.
+std::optional<ShapeJoining> with_common_shape(const Cover& cover, const std::vector<TubePiece>& pieces,
+                                              const OcclusionTest& occlusion) {
+  std::optional<ShapeJoining> best;
+  for (const std::vector<Vec3>& shape : possible_shapes(whole_tubes(cover), pieces)) {
+    ShapeJoining joining = join_by_shape(pieces, shape, occlusion);
+    if (joining.explained < 0.5 || (best && joining.cost >= best->cost)) continue;
+    best = std::move(joining);
+  }
+  return best;
+}
+
 }  // namespace
 
-Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length) {
+Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length,
+                    bool tries_shape) {
   if (pieces.empty()) return {.paths = {}, .tube_length = tube_length, .tubes_branch = false};
   const JoinSearch search(pieces, occlusion);
   const LengthModel lengths{.radius = pieces.front().radius, .common = tube_length};
@@ -146,6 +173,13 @@ Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& o
   // Where tubes branch, chains are parts of them.
   if (tube_length <= 0.0 && !search.tubes_branch())
     cover = with_common_length(with_longest_length(cover, search), search);
+  if (tries_shape) {
+    if (auto alike = with_common_shape(cover, pieces, occlusion)) {
+      std::ranges::move(join_pieces(alike->rest, occlusion, tube_length, false).paths,
+                        std::back_inserter(alike->paths));
+      return {.paths = std::move(alike->paths), .tube_length = alike->tube_length, .tubes_branch = false};
+    }
+  }
   return {.paths = paths_of(cover), .tube_length = cover.lengths.common, .tubes_branch = search.tubes_branch()};
 }
 

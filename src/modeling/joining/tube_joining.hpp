@@ -16,7 +16,9 @@ struct Joining {
 /// Chooses the chains of pieces that explain the scan best: each piece in one tube, joins by their likelihood, tubes of
 /// `tube_length` metres (0: one that explains the scan better than any lengths do, if there is one) whose missing part
 /// must find room where the scanner could not see. An end on another piece's side (branch_joining.hpp) is no end that a
-/// chain could go on from.
-Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length);
+/// chain could go on from. Where most tubes turn out to be bent alike (common_shape.hpp), copies of their shape take up the
+/// pieces first, unless `tries_shape` is false, and chains what the copies leave.
+Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length,
+                    bool tries_shape = true);
 
 }  // namespace tubebin::modeling

@@ -1,0 +1,103 @@
+#include "modeling/joining/common_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "modeling/joining/sampled_curve.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// Samples stand half a radius apart; fits end a radius and a half too early or too late.
+constexpr std::ptrdiff_t kEndSlack = 3;
+
+/// Whether the distances between first, middle and last sample are the same but for what fits are off: cheap to ask first.
+bool has_same_chords(std::span<const Vec3> a, std::span<const Vec3> b, double radius) {
+  const auto chord = [](std::span<const Vec3> curve, std::size_t i, std::size_t j) {
+    return (curve[i] - curve[j]).norm();
+  };
+  const std::size_t middle = a.size() / 2, last = a.size() - 1;
+  return std::abs(chord(a, 0, last) - chord(b, 0, last)) < 3.0 * radius &&
+         std::abs(chord(a, 0, middle) - chord(b, 0, middle)) < 2.0 * radius &&
+         std::abs(chord(a, middle, last) - chord(b, middle, last)) < 2.0 * radius;
+}
+
+/// Mean square of the distances of pairs, square metres.
+double squared_distance(std::span<const Vec3> from, std::span<const Vec3> to, const Pose& motion) {
+  double squares = 0.0;
+  for (std::size_t k = 0; k < from.size(); ++k) squares += (motion * from[k] - to[k]).squaredNorm();
+  return squares / static_cast<double>(from.size());
+}
+
+/// Whether the piece's samples lie on a part of the shape. Of two curves by chance alike, the more they bend the fewer: a
+/// twentieth of the bend is what parts of one kind agree to.
+bool lies_on(std::vector<Vec3> piece, const std::vector<Vec3>& shape, double radius) {
+  const double agreed = std::min(radius / 2.0, sagitta(piece) / 12.0);
+  const auto length = static_cast<std::ptrdiff_t>(piece.size()), all = static_cast<std::ptrdiff_t>(shape.size());
+  for (const bool is_reversed : {false, true}) {
+    if (is_reversed) std::ranges::reverse(piece);
+    for (std::ptrdiff_t first = -kEndSlack; first + length <= all + kEndSlack; first += kEndSlack) {
+      const std::ptrdiff_t inside = std::max<std::ptrdiff_t>(first, 0), end = std::min(first + length, all);
+      const std::span<const Vec3> part(shape.data() + inside, static_cast<std::size_t>(end - inside));
+      const std::span<const Vec3> own(piece.data() + (inside - first), part.size());
+      if (!has_same_chords(own, part, radius)) continue;
+      const Pose motion = best_motion(own, part);
+      if (squared_distance(own, part, motion) > radius * radius) continue;
+      if (distance_apart(piece, shape, motion) < agreed) return true;
+    }
+  }
+  return false;
+}
+
+/// A centreline, and how much of the pieces lies on it, metres.
+struct PossibleShape {
+  std::vector<Vec3> samples;
+  double explained = 0.0;
+};
+
+}  // namespace
+
+std::vector<std::vector<Vec3>> possible_shapes(std::span<const std::vector<Vec3>> whole,
+                                               std::span<const TubePiece> pieces) {
+  constexpr std::size_t kMost = 3;
+  if (pieces.empty()) return {};
+  const double radius = pieces.front().radius;
+  const auto sampled = [&](const std::vector<Vec3>& nodes) { return smooth_samples(nodes, radius / 2.0, radius); };
+  std::vector<std::vector<Vec3>> bent_pieces;
+  for (const TubePiece& piece : pieces)
+    if (piece.length() > 8.0 * radius)
+      if (auto samples = sampled(piece.nodes); sagitta(samples) >= 2.0 * radius)
+        bent_pieces.push_back(std::move(samples));
+
+  std::vector<PossibleShape> possible;
+  for (const std::vector<Vec3>& nodes : whole) {
+    PossibleShape shape{.samples = sampled(nodes)};
+    if (sagitta(shape.samples) < 4.0 * radius) continue;
+    const double length = polyline_length(shape.samples);
+    double long_enough = 0.0;
+    for (const std::vector<Vec3>& piece : bent_pieces) {
+      const double in_common = std::min(polyline_length(piece), length);
+      const bool is_longer = piece.size() > shape.samples.size();  // and goes over to another tube where they touch
+      if (in_common < length / 2.0) continue;
+      long_enough += polyline_length(piece);
+      if (lies_on(is_longer ? shape.samples : piece, is_longer ? piece : shape.samples, radius))
+        shape.explained += in_common;
+    }
+    // Ends that fits miss make two tubes a little shorter.
+    if (shape.explained >= std::max(1.9 * length, long_enough / 2.0)) possible.push_back(std::move(shape));
+  }
+  std::ranges::stable_sort(possible, std::greater<>(), &PossibleShape::explained);
+  std::vector<std::vector<Vec3>> distinct;
+  for (PossibleShape& shape : possible) {
+    const auto is_same = [&](const std::vector<Vec3>& other) {
+      return std::abs(polyline_length(other) - polyline_length(shape.samples)) < 2.0 * radius &&
+             lies_on(shape.samples, other, radius);
+    };
+    if (distinct.size() < kMost && std::ranges::none_of(distinct, is_same))
+      distinct.push_back(std::move(shape.samples));
+  }
+  return distinct;
+}
+
+}  // namespace tubebin::modeling

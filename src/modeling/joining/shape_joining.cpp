@@ -1,0 +1,152 @@
+#include "modeling/joining/shape_joining.hpp"
+
+#include <algorithm>
+
+#include "modeling/joining/cover_margins.hpp"
+#include "modeling/joining/sampled_curve.hpp"
+#include "modeling/joining/shape_copies.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// nats, against each tube that the scene is taken to have more, and against a section on its own, most of whose tube would
+/// be out of sight.
+constexpr double kTubeCost = 3.0, kAloneCost = 4.0;
+constexpr std::size_t kNodeLimit = 5000;
+
+/// Samples, half a radius apart, where a piece turns by more than 37 degrees within two radii, and most about there.
+std::vector<std::size_t> sharp_bends(const std::vector<Vec3>& samples) {
+  constexpr std::size_t kReach = 4;
+  std::vector<double> cosines(samples.size(), 1.0);
+  for (std::size_t k = kReach; k + kReach < samples.size(); ++k)
+    cosines[k] = (samples[k] - samples[k - kReach]).normalized().dot((samples[k + kReach] - samples[k]).normalized());
+  std::vector<std::size_t> bends;
+  for (std::size_t k = kReach; k + kReach < samples.size(); ++k)
+    if (cosines[k] < 0.8 && cosines[k] == *std::min_element(&cosines[k - kReach], &cosines[k + kReach] + 1))
+      bends.push_back(k);
+  return bends;
+}
+
+std::vector<Section> sections_of(const std::vector<TubePiece>& pieces) {
+  std::vector<Section> sections;
+  for (const TubePiece& piece : pieces) {
+    const std::vector<Vec3> samples = smooth_samples(piece.nodes, piece.radius / 2.0, piece.radius);
+    std::vector<std::size_t> ends = sharp_bends(samples);
+    ends.push_back(samples.size() - 1);
+    std::size_t first = 0;
+    for (const std::size_t last : ends) {
+      Section section{.samples = {&samples[first], &samples[last] + 1}};
+      section.length = polyline_length(section.samples);
+      section.evidence = piece.evidence * section.length / piece.length();
+      sections.push_back(std::move(section));
+      first = last;
+    }
+  }
+  return sections;
+}
+
+/// A copy of the best cover, and how sure it is (cover_margins.hpp).
+struct ChosenCopy {
+  ShapeCopy copy;
+  double whole_odds = 0.0;
+  std::vector<double> bridge_odds;  ///< from each section to the next
+};
+
+/// Copies that together with single sections make up the scene.
+struct CopyCover {
+  std::vector<ChosenCopy> chosen;
+  double cost = 0.0;
+};
+
+CopyCover cheapest_copies(const std::vector<Section>& sections, const std::vector<ShapeCopy>& copies, double radius) {
+  std::vector<PathCandidate> candidates;
+  for (const ShapeCopy& copy : copies) {
+    PathCandidate& candidate = candidates.emplace_back();
+    for (const PlacedSection& each : copy.placed) candidate.items.push_back(each.section);
+    candidate.cost = kTubeCost + copy.cost;
+  }
+  for (std::uint32_t k = 0; k < sections.size(); ++k) {
+    const double part = std::min(sections[k].length / (4.0 * radius), 1.0);
+    PathCandidate& alone = candidates.emplace_back();
+    alone.items.push_back(k);
+    alone.cost = kTubeCost + part * kAloneCost;
+  }
+  constexpr std::size_t kMostNodes = 5000;
+  const PathCover cheapest = cheapest_path_cover(sections.size(), candidates, {}, kMostNodes);
+  const CoverMargins margins(cheapest, candidates, {});
+  CopyCover cover;
+  for (const std::uint32_t c : cheapest.chosen) {
+    cover.cost += candidates[c].cost;
+    if (c >= copies.size()) continue;
+    ChosenCopy& chosen = cover.chosen.emplace_back(copies[c], margins.of_path(c));
+    for (std::size_t k = 0; k + 1 < copies[c].placed.size(); ++k)
+      chosen.bridge_odds.push_back(margins.of_pair(copies[c].placed[k].section, copies[c].placed[k + 1].section));
+  }
+  return cover;
+}
+
+/// The copy's sections in a row, and its own course where none shows it.
+TubePath path_of(const ChosenCopy& chosen, const std::vector<Section>& sections, const std::vector<Vec3>& shape) {
+  constexpr std::size_t kRadius = 2, kDiameter = 4;  // samples
+  const ShapeCopy& copy = chosen.copy;
+  TubePath path{.whole_odds = chosen.whole_odds};
+  const auto add = [&](const Vec3& node) {
+    if (!path.nodes.empty()) path.bridged.push_back(false);
+    path.nodes.push_back(node);
+  };
+  const auto bridge_to = [&](const Vec3& node, double odds) {
+    add(node);
+    if (path.bridged.empty()) return;
+    path.bridged.back() = true;
+    path.bridge_odds.push_back(odds);
+  };
+  std::size_t next = 0;
+  for (std::size_t n = 0; n < copy.placed.size(); ++n) {
+    const PlacedSection& placed = copy.placed[n];
+    const double odds = n == 0 ? chosen.whole_odds : chosen.bridge_odds[n - 1];
+    for (; next + kRadius < placed.first; next += kRadius) bridge_to(copy.pose * shape[next], odds);
+    std::vector<Vec3> nodes = sections[placed.section].samples;
+    if (placed.is_reversed) std::ranges::reverse(nodes);
+    // Two sections of one piece share a node.
+    if (path.nodes.empty() || nodes.front() != path.nodes.back()) bridge_to(nodes.front(), odds);
+    for (std::size_t k = 1; k < nodes.size(); ++k) add(nodes[k]);
+    path.evidence += sections[placed.section].evidence;
+    next = placed.last + kRadius;
+  }
+  if (next + kDiameter - kRadius < shape.size())
+    for (; next < shape.size(); next += kRadius) bridge_to(copy.pose * shape[next], chosen.whole_odds);
+  return path;
+}
+
+}  // namespace
+
+ShapeJoining join_by_shape(const std::vector<TubePiece>& pieces, const std::vector<Vec3>& shape,
+                           const OcclusionTest& occlusion) {
+  ShapeJoining result;
+  if (pieces.empty()) return result;
+  result.tube_length = polyline_length(shape);
+  const double radius = pieces.front().radius;
+  const std::vector<Section> sections = sections_of(pieces);
+  const CopyCover cover = cheapest_cover(sections, find_shape_copies(sections, shape, radius, occlusion), radius);
+  result.cost = cover.cost;
+  std::vector<bool> is_placed(sections.size(), false);
+  for (const ChosenCopy& chosen : cover.chosen) {
+    result.paths.push_back(path_of(chosen, sections, shape));
+    for (const PlacedSection& each : chosen.copy.placed) is_placed[each.section] = true;
+  }
+  double all = 0.0;
+  for (std::size_t k = 0; k < sections.size(); ++k) {
+    const Section& section = sections[k];
+    all += section.length;
+    const auto explains = [&](const ChosenCopy& chosen) { return lies_on_copy(section, chosen.copy, shape, radius); };
+    if (is_placed[k] || std::ranges::any_of(cover.chosen, explains)) {
+      result.explained += section.length;
+    } else {
+      result.rest.push_back({.nodes = section.samples, .radius = radius, .points = {}, .evidence = section.evidence});
+    }
+  }
+  result.explained /= all;
+  return result;
+}
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,139 @@
+#include "modeling/joining/shape_joining.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "modeling/joining/common_shape.hpp"
+#include "modeling/joining/sampled_curve.hpp"
+#include "modeling/joining/tube_joining.hpp"
+#include "modeling/lid_scene.hpp"
+#include "tubebin/core/random.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+constexpr double kLeg = 0.15, kMiddle = 0.2, kLength = 2.0 * kLeg + kMiddle;  // metres
+
+/// A U in the plane of z = 0, its first corner at the origin, its first leg along -x and its middle along -y.
+const std::vector<Vec3> kU = {{-kLeg, 0, 0}, {0, 0, 0}, {0, -kMiddle, 0}, {-kLeg, -kMiddle, 0}};
+
+std::vector<Vec3> moved(std::vector<Vec3> nodes, const Pose& pose) {
+  for (Vec3& node : nodes) node = pose * node;
+  return nodes;
+}
+
+Pose turned(double degrees, const Vec3& to) {
+  return make_pose(Quat(Eigen::AngleAxisd(radians(degrees), Vec3::UnitZ())), to);
+}
+
+TubePiece piece_along(std::vector<Vec3> nodes) { return {.nodes = std::move(nodes), .radius = kRadius, .points = {}}; }
+
+/// The U in the pose without what is nearer to its first corner than this, metres.
+std::vector<TubePiece> without_first_corner(const Pose& pose, double hidden) {
+  return {piece_along(moved({kU[0], {-hidden, 0, 0}}, pose)),
+          piece_along(moved({{0, -hidden, 0}, kU[2], kU[3]}, pose))};
+}
+
+std::vector<Vec3> random_tube(Random& random) {
+  std::vector<Vec3> nodes = {Vec3::Zero()};
+  Vec3 along = Vec3::UnitX();
+  for (int k = 0; k < 8; ++k) {
+    const Vec3 axis = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+    along = Eigen::AngleAxisd(radians(random.uniform(0.0, 30.0)), axis) * along;
+    nodes.push_back(nodes.back() + kLength / 8.0 * along);
+  }
+  return nodes;
+}
+
+TEST(SampledCurve, KeepsEqualStepsFromEndToEnd) {
+  const auto samples = smooth_samples(kU, kRadius / 2.0, 0.0);
+  EXPECT_EQ(samples.front(), kU.front());
+  EXPECT_EQ(samples.back(), kU.back());
+  EXPECT_NEAR(polyline_length(samples), kLength, 0.2 * kRadius);
+  for (std::size_t k = 1; k < samples.size(); ++k)
+    EXPECT_LE((samples[k] - samples[k - 1]).norm(), 1.01 * kLength / static_cast<double>(samples.size() - 1));
+}
+
+TEST(SampledCurve, FindsTheMotionBetweenTwoCurves) {
+  const Pose motion = make_pose(Quat(Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized())), {0.3, -0.2, 0.1});
+  const auto samples = smooth_samples(kU, kRadius / 2.0, kRadius);
+  const auto there = moved(samples, motion);
+  EXPECT_TRUE(best_motion(samples, there).isApprox(motion, 1e-9));
+  EXPECT_LT(distance_apart(samples, there, motion * turned(3.0, {0.002, 0, 0})), kRadius / 20.0);
+  EXPECT_NEAR(sagitta(samples), kLeg, kRadius);
+}
+
+TEST(CommonShape, IsThatOfPartsBentAlike) {
+  std::vector<std::vector<Vec3>> whole = {moved(kU, turned(40.0, {0.5, 0, 0}))};
+  std::vector<TubePiece> pieces = {piece_along(whole.front()), without_first_corner(turned(80.0, {0, 0.5, 0}), 0.05)[1],
+                                   without_first_corner(turned(200.0, {-0.5, 0, 0}), 0.05)[1]};
+  const auto shapes = possible_shapes(whole, pieces);
+  ASSERT_EQ(shapes.size(), 1u);
+  EXPECT_NEAR(polyline_length(shapes.front()), kLength, 2.0 * kRadius);  // the mean over a radius cuts corners
+  pieces.resize(2);  // the whole one, and too little to make another
+  EXPECT_TRUE(possible_shapes(whole, pieces).empty());
+}
+
+TEST(CommonShape, TubesOfRandomBendsAndStraightOnesHaveNone) {
+  Random random(7);
+  std::vector<std::vector<Vec3>> bent, straight;
+  for (int k = 0; k < 40; ++k) {
+    bent.push_back(random_tube(random));
+    straight.push_back({{0.1 * k, 0, 0}, {0.1 * k, kLength, 0}});
+  }
+  for (const auto& whole : {bent, straight}) {
+    std::vector<TubePiece> pieces;
+    for (const auto& nodes : whole) pieces.push_back(piece_along(nodes));
+    EXPECT_TRUE(possible_shapes(whole, pieces).empty());
+  }
+}
+
+class ShapeJoiningUnderLid : public LidScene {
+ protected:
+  /// Two corners under the lid, back to back: straight on, either's leg leads to the other's middle.
+  std::vector<TubePiece> back_to_back() const {
+    std::vector<TubePiece> pieces = without_first_corner(turned(0.0, {-0.013, -0.013, 0}), 0.03);
+    std::ranges::move(without_first_corner(turned(180.0, {0.013, 0.013, 0}), 0.03), std::back_inserter(pieces));
+    return pieces;
+  }
+};
+
+TEST_F(ShapeJoiningUnderLid, JoinsWhatOneCopyExplains) {
+  const ShapeJoining joining = join_by_shape(back_to_back(), smooth_samples(kU, kRadius / 2.0, kRadius), occlusion());
+  EXPECT_TRUE(joining.rest.empty());
+  EXPECT_DOUBLE_EQ(joining.explained, 1.0);
+  ASSERT_EQ(joining.paths.size(), 2u);
+  const std::vector<Vec3> first = moved(kU, turned(0.0, {-0.013, -0.013, 0}));
+  const std::vector<Vec3> second = moved(kU, turned(180.0, {0.013, 0.013, 0}));
+  for (const TubePath& path : joining.paths) {
+    const bool is_first = distance_to_polyline(path.nodes.front(), first) < kRadius;
+    for (const Vec3& node : path.nodes) EXPECT_LT(distance_to_polyline(node, is_first ? first : second), kRadius);
+    EXPECT_EQ(path.bridged.size() + 1, path.nodes.size());
+    EXPECT_EQ(std::ranges::count(path.bridged, true), std::ssize(path.bridge_odds));
+  }
+}
+
+TEST_F(ShapeJoiningUnderLid, LeavesWhatTheScanShowsToBeElsewhere) {
+  // In the open, where a corner would be seen.
+  std::vector<TubePiece> pieces = without_first_corner(turned(0.0, {0.3, 0.3, 0}), 0.06);
+  const ShapeJoining joining = join_by_shape(pieces, smooth_samples(kU, kRadius / 2.0, kRadius), occlusion());
+  for (const TubePath& path : joining.paths)  // the second piece's two sections alone
+    EXPECT_GT(distance_to_polyline(pieces[0].nodes.front(), path.nodes), 2.0 * kRadius);
+}
+
+TEST_F(ShapeJoiningUnderLid, TheSceneShowsTheShapeItself) {
+  std::vector<TubePiece> pieces = back_to_back();
+  pieces.push_back(piece_along(moved(kU, turned(30.0, {-0.2, 0.4, 0}))));
+  pieces.push_back(piece_along(moved(kU, turned(-70.0, {0.2, -0.4, 0}))));
+  const Joining joining = join_pieces(pieces, occlusion(), 0.0);
+  EXPECT_NEAR(joining.tube_length, kLength, 2.0 * kRadius);
+  ASSERT_EQ(joining.paths.size(), 4u);
+  for (const TubePath& path : joining.paths) {
+    EXPECT_NEAR(polyline_length(path.nodes), kLength, 3.0 * kRadius);
+    EXPECT_GT(sagitta(smooth_samples(path.nodes, kRadius / 2.0, kRadius)), 0.12);  // a U, not a Z
+  }
+}
+
+}  // namespace
+}  // namespace tubebin::modeling
