@@ -43,7 +43,7 @@ bool lies_on(std::vector<Vec3> piece, const std::vector<Vec3>& shape, double rad
       const std::span<const Vec3> own(piece.data() + (inside - first), part.size());
       if (!has_same_chords(own, part, radius)) continue;
       const Pose motion = best_motion(own, part);
-      if (squared_distance(own, part, motion) > radius * radius) continue;
+      if (squared_distance(own, part, motion) > 4.0 * radius * radius) continue;  // places along it are off by as much
       if (distance_apart(piece, shape, motion) < agreed) return true;
     }
   }

@@ -13,7 +13,7 @@ namespace tubebin::modeling {
 namespace {
 
 /// As in join_candidates.cpp: log of how seldom a place that a tube takes up is measured as empty.
-constexpr double kEmptyCost = 4.6;
+constexpr double kEmptyPlaceCost = 4.6;
 
 class CopyFinder {
  public:
@@ -191,7 +191,7 @@ class CopyFinder {
     for (std::size_t k = 0; k < shape_.size() && cost <= kCopyCostLimit; ++k) {
       if (is_shown[k]) continue;
       const Vec3 place = copy.pose * shape_[k], along = copy.pose.linear() * tangents_[k];
-      cost += kEmptyCost / 4.0 * (is_taken(place, others) ? 1.0 : occlusion_.around(place, along).empty);
+      cost += kEmptyPlaceCost / 4.0 * (is_taken(place, others) ? 1.0 : occlusion_.around(place, along).empty);
     }
     return cost;
   }
