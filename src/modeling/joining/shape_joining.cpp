@@ -12,7 +12,6 @@ namespace {
 /// nats, against each tube that the scene is taken to have more, and against a section on its own, most of whose tube would
 /// be out of sight.
 constexpr double kTubeCost = 3.0, kAloneCost = 4.0;
-constexpr std::size_t kNodeLimit = 5000;
 
 /// Samples, half a radius apart, where a piece turns by more than 37 degrees within two radii, and most about there.
 std::vector<std::size_t> sharp_bends(const std::vector<Vec3>& samples) {
@@ -78,7 +77,9 @@ CopyCover cheapest_copies(const std::vector<Section>& sections, const std::vecto
   for (const std::uint32_t c : cheapest.chosen) {
     cover.cost += candidates[c].cost;
     if (c >= copies.size()) continue;
-    ChosenCopy& chosen = cover.chosen.emplace_back(copies[c], margins.of_path(c));
+    ChosenCopy& chosen = cover.chosen.emplace_back();
+    chosen.copy = copies[c];
+    chosen.whole_odds = margins.of_path(c);
     for (std::size_t k = 0; k + 1 < copies[c].placed.size(); ++k)
       chosen.bridge_odds.push_back(margins.of_pair(copies[c].placed[k].section, copies[c].placed[k + 1].section));
   }
@@ -89,7 +90,8 @@ CopyCover cheapest_copies(const std::vector<Section>& sections, const std::vecto
 TubePath path_of(const ChosenCopy& chosen, const std::vector<Section>& sections, const std::vector<Vec3>& shape) {
   constexpr std::size_t kRadius = 2, kDiameter = 4;  // samples
   const ShapeCopy& copy = chosen.copy;
-  TubePath path{.whole_odds = chosen.whole_odds};
+  TubePath path;
+  path.whole_odds = chosen.whole_odds;
   const auto add = [&](const Vec3& node) {
     if (!path.nodes.empty()) path.bridged.push_back(false);
     path.nodes.push_back(node);
@@ -127,7 +129,7 @@ ShapeJoining join_by_shape(const std::vector<TubePiece>& pieces, const std::vect
   result.tube_length = polyline_length(shape);
   const double radius = pieces.front().radius;
   const std::vector<Section> sections = sections_of(pieces);
-  const CopyCover cover = cheapest_cover(sections, find_shape_copies(sections, shape, radius, occlusion), radius);
+  const CopyCover cover = cheapest_copies(sections, find_shape_copies(sections, shape, radius, occlusion), radius);
   result.cost = cover.cost;
   std::vector<bool> is_placed(sections.size(), false);
   for (const ChosenCopy& chosen : cover.chosen) {
