@@ -31,8 +31,9 @@ void make_scenes(const dataset::DatasetConfig& config, const dataset::SceneStore
   }
   for (std::size_t step = 0; step < made.piles.size(); ++step) {
     const dataset::Pile& pile = made.piles[step];
-    const std::string name = fmt::format("{}/{}/{}", lifts, id.name(), step);
-    store.begin_write(name, dataset::show_pile(config, id, pile).content)();
+    dataset::SceneId shown = id;
+    if (lifts > 0) shown.step = static_cast<int>(step);
+    store.begin_write(fmt::format("{}/{}", lifts, shown.name()), dataset::show_pile(made, shown).content)();
     ++costs.scenes;
     costs.largest_drift = std::max(costs.largest_drift, pile.physics.largest_drift);
     costs.deepest_penetration = std::max(costs.deepest_penetration, pile.physics.deepest_penetration);

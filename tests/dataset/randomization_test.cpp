@@ -136,7 +136,7 @@ TEST(LookAt, MeetsThePointWithALevelImage) {
     const Vec3 seen = scanner_from_world * target;
     EXPECT_LT(seen.head<2>().norm(), 1e-12);
     EXPECT_NEAR(seen.z(), (target - position).norm(), 1e-12);
-    const auto axes = scanner.world_from_scanner().linear();
+    const Eigen::Matrix3d axes = scanner.world_from_scanner().linear();
     EXPECT_NEAR(axes(2, 0), 0.0, 1e-15);  // image x is level
     EXPECT_LE(axes(2, 1), 0.0);           // image y points down
   }
