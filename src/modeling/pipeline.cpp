@@ -88,11 +88,41 @@ std::vector<cloud::Point> without_zero_points(std::span<const cloud::Point> poin
   return measured;
 }
 
+/// Whether the foreground has more than tubes that hang over the walls: points farther from the bin's sides than half its
+/// height.
+bool has_surroundings(const ModelingInput& input, const Background& background) {
+  const Pose bin_from_world = input.world_from_bin.inverse();
+  const double reach = input.bin->height / 2.0 + input.bin->wall_thickness;
+  const Eigen::Array2d half(input.bin->length / 2.0 + reach, input.bin->width / 2.0 + reach);
+  const auto is_outside = [&](std::uint32_t i) {
+    const Vec3 p = bin_from_world * input.points[i].cast<double>();
+    return (p.head<2>().array().abs() > half).any();
+  };
+  return 50 * std::ranges::count_if(background.foreground, is_outside) > std::ssize(background.foreground);
+}
+
+/// The background of a known bin; with other things around it, also what is flat of these, and the rest proves that it is
+/// tubes.
+Background background_around_bin(const ModelingInput& input, const ViewProjection& projection,
+                                 const FilteringOptions& options) {
+  Background of_bin = background_of_bin(input, options);
+  if (!has_surroundings(input, of_bin)) return of_bin;
+  Background background = find_background(input, projection);
+  std::vector<std::uint32_t> foreground;
+  std::ranges::set_intersection(background.foreground, of_bin.foreground, std::back_inserter(foreground));
+  std::vector<std::uint32_t> set_aside = std::move(background.set_aside);
+  std::ranges::set_difference(background.foreground, foreground, std::back_inserter(set_aside));
+  std::ranges::sort(set_aside);
+  background.foreground = std::move(foreground);
+  background.set_aside = std::move(set_aside);
+  return background;
+}
+
 /// A known bin's floor and walls are background where the cloud shows them; a bin that it shows elsewhere is moved there,
 /// and one that it does not show is unknown.
 Background find_surroundings(ModelingInput& input, const ViewProjection& projection, const FilteringOptions& options) {
   if (input.bin && bin_is_in_place(input, std::max(options.bin_margin / 2.0, 1e-4)))
-    return background_of_bin(input, options);
+    return background_around_bin(input, projection, options);
   Background background = find_background(input, projection);
   if (!input.bin) return background;
   const auto pose = refined_bin_pose(input, background.regions);
@@ -101,7 +131,7 @@ Background find_surroundings(ModelingInput& input, const ViewProjection& project
     return background;
   }
   input.world_from_bin = *pose;
-  return background_of_bin(input, options);
+  return background_around_bin(input, projection, options);
 }
 
 /// Radii and pieces; of `--method region_growing`, which finds pieces of its own, a told radius alone.

@@ -59,7 +59,8 @@ class CopyFinder {
 
   /// A straight section leaves the shape free to turn about it: so that it leads through each of the others in turn.
   void turn_about(const std::vector<Vec3>& samples, const Pose& pose) {
-    const Vec3 origin = samples.front(), axis = (samples.back() - origin).normalized();
+    const Vec3& origin = samples.front();
+    const Vec3 axis = (samples.back() - origin).normalized();
     const auto across = [&](const Vec3& p) -> Vec3 { return p - origin - (p - origin).dot(axis) * axis; };
     // By how far ahead along the axis and how far off it they are, all turns of the shape are the same.
     const auto profile = [&](const Vec3& p) { return Eigen::Vector2d((p - origin).dot(axis), across(p).norm()); };
