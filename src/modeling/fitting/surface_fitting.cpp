@@ -72,11 +72,36 @@ double robust_sigma(const std::vector<Foot>& feet, double radius) {
   return sizes.empty() ? 0.0 : 1.4826 * median(sizes);
 }
 
+/// A node's part of the normal equations, which tie each node to the next alone.
+struct NodeEquation {
+  Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d with_next = Eigen::Matrix3d::Zero();
+  Vec3 pull = Vec3::Zero();
+};
+
+/// By elimination from the first node to the last and back (block Thomas algorithm), in time that grows with their number.
+std::vector<Vec3> solve(std::vector<NodeEquation> equations) {
+  std::vector<Vec3> moves(equations.size());
+  std::vector<Eigen::LDLT<Eigen::Matrix3d>> factors;
+  for (std::size_t k = 0; k < equations.size(); ++k) {
+    if (k > 0) {
+      const NodeEquation& before = equations[k - 1];
+      equations[k].own -= before.with_next.transpose() * factors.back().solve(before.with_next);
+      equations[k].pull -= before.with_next.transpose() * factors.back().solve(before.pull);
+    }
+    factors.emplace_back(equations[k].own);
+  }
+  for (std::size_t k = equations.size(); k-- > 0;) {
+    const bool is_last = k + 1 == equations.size();
+    moves[k] =
+        factors[k].solve(is_last ? equations[k].pull : Vec3(equations[k].pull - equations[k].with_next * moves[k + 1]));
+  }
+  return moves;
+}
+
 /// One damped Gauss-Newton step; returns the largest move of a node.
 double step(std::vector<Vec3>& nodes, const std::vector<Foot>& feet, double radius, double cutoff) {
-  const auto n = static_cast<Eigen::Index>(3 * nodes.size());
-  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+  std::vector<NodeEquation> equations(nodes.size());
   double total_weight = 0.0;
   for (const Foot& foot : feet) {
     const double residual = (foot.distance - radius) / cutoff;
@@ -86,22 +111,22 @@ double step(std::vector<Vec3>& nodes, const std::vector<Foot>& feet, double radi
     // The distance's derivative is -(1 - t) outward by the start node and -t outward by the end node.
     const double a = 1.0 - foot.t, b = foot.t;
     const Eigen::Matrix3d outer = tukey * foot.outward * foot.outward.transpose();
-    const auto i = static_cast<Eigen::Index>(3 * foot.cylinder);
-    hessian.block<3, 3>(i, i) += a * a * outer;
-    hessian.block<3, 3>(i, i + 3) += a * b * outer;
-    hessian.block<3, 3>(i + 3, i + 3) += b * b * outer;
     const Vec3 pull = tukey * (foot.distance - radius) * foot.outward;
-    gradient.segment<3>(i) += a * pull;
-    gradient.segment<3>(i + 3) += b * pull;
+    NodeEquation &start = equations[foot.cylinder], &end = equations[foot.cylinder + 1];
+    start.own += a * a * outer;
+    start.with_next += a * b * outer;
+    end.own += b * b * outer;
+    start.pull += a * pull;
+    end.pull += b * pull;
   }
   // A thousandth of a node's share of the weight: nothing to what points determine, all where they determine nothing.
-  hessian.diagonal().array() += 1e-3 * std::max(total_weight, 1.0) / static_cast<double>(nodes.size());
-  const Eigen::VectorXd move = hessian.selfadjointView<Eigen::Upper>().ldlt().solve(gradient);
+  const double damping = 1e-3 * std::max(total_weight, 1.0) / static_cast<double>(nodes.size());
+  for (NodeEquation& equation : equations) equation.own.diagonal().array() += damping;
+  const std::vector<Vec3> moves = solve(std::move(equations));
   double largest = 0.0;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const Vec3 delta = move.segment<3>(static_cast<Eigen::Index>(3 * k));
-    nodes[k] += delta;
-    largest = std::max(largest, delta.norm());
+    nodes[k] += moves[k];
+    largest = std::max(largest, moves[k].norm());
   }
   return largest;
 }
