@@ -50,52 +50,63 @@ bool lies_on(std::vector<Vec3> piece, const std::vector<Vec3>& shape, double rad
   return false;
 }
 
-/// A centreline, and how much of the pieces lies on it, metres.
-struct PossibleShape {
+struct Curve {
   std::vector<Vec3> samples;
-  double explained = 0.0;
+  double length = 0.0;  ///< metres
 };
+
+Curve smoothed(const std::vector<Vec3>& nodes, double radius) {
+  Curve curve{.samples = smooth_samples(nodes, radius / 2.0, radius)};
+  curve.length = polyline_length(curve.samples);
+  return curve;
+}
+
+/// Straight pieces lie on anything.
+std::vector<Curve> bent_pieces(std::span<const TubePiece> pieces, double radius) {
+  std::vector<Curve> bent;
+  for (const TubePiece& piece : pieces) {
+    if (piece.length() < 8.0 * radius) continue;
+    Curve curve = smoothed(piece.nodes, radius);
+    if (sagitta(curve.samples) >= 2.0 * radius) bent.push_back(std::move(curve));
+  }
+  return bent;
+}
+
+/// Whether the pieces that are at least half as long as the shape lie on it, or it on them where they go over to another
+/// tube, for two fifths of their length and as much as makes two tubes, ends that fits miss left out.
+bool is_common(const Curve& shape, const std::vector<Curve>& pieces, double radius) {
+  double explained = 0.0, all = 0.0;
+  for (const Curve& piece : pieces) {
+    if (piece.length < shape.length / 2.0) continue;
+    all += piece.length;
+    const auto& [shorter, longer] =
+        std::minmax(shape, piece, [](const Curve& a, const Curve& b) { return a.samples.size() < b.samples.size(); });
+    if (lies_on(shorter.samples, longer.samples, radius)) explained += std::min(piece.length, shape.length);
+  }
+  return explained >= std::max(1.75 * shape.length, 0.4 * all);
+}
 
 }  // namespace
 
-std::vector<std::vector<Vec3>> possible_shapes(std::span<const std::vector<Vec3>> whole,
+std::vector<std::vector<Vec3>> possible_shapes(std::span<const std::vector<Vec3>> tubes,
                                                std::span<const TubePiece> pieces) {
-  constexpr std::size_t kMost = 3;
+  constexpr std::size_t kMost = 5;
   if (pieces.empty()) return {};
   const double radius = pieces.front().radius;
-  const auto sampled = [&](const std::vector<Vec3>& nodes) { return smooth_samples(nodes, radius / 2.0, radius); };
-  std::vector<std::vector<Vec3>> bent_pieces;
-  for (const TubePiece& piece : pieces)
-    if (piece.length() > 8.0 * radius)
-      if (auto samples = sampled(piece.nodes); sagitta(samples) >= 2.0 * radius)
-        bent_pieces.push_back(std::move(samples));
-
-  std::vector<PossibleShape> possible;
-  for (const std::vector<Vec3>& nodes : whole) {
-    PossibleShape shape{.samples = sampled(nodes)};
-    if (sagitta(shape.samples) < 4.0 * radius) continue;
-    const double length = polyline_length(shape.samples);
-    double long_enough = 0.0;
-    for (const std::vector<Vec3>& piece : bent_pieces) {
-      const double in_common = std::min(polyline_length(piece), length);
-      const bool is_longer = piece.size() > shape.samples.size();  // and goes over to another tube where they touch
-      if (in_common < length / 2.0) continue;
-      long_enough += polyline_length(piece);
-      if (lies_on(is_longer ? shape.samples : piece, is_longer ? piece : shape.samples, radius))
-        shape.explained += in_common;
-    }
-    // Ends that fits miss make two tubes a little shorter.
-    if (shape.explained >= std::max(1.9 * length, long_enough / 2.0)) possible.push_back(std::move(shape));
+  const std::vector<Curve> bent = bent_pieces(pieces, radius);
+  std::vector<Curve> common;
+  for (const std::vector<Vec3>& nodes : tubes) {
+    Curve shape = smoothed(nodes, radius);
+    if (sagitta(shape.samples) >= 4.0 * radius && is_common(shape, bent, radius)) common.push_back(std::move(shape));
   }
-  std::ranges::stable_sort(possible, std::greater<>(), &PossibleShape::explained);
+  // What is seen of a tube is a part of its shape.
+  std::ranges::stable_sort(common, std::greater<>(), &Curve::length);
   std::vector<std::vector<Vec3>> distinct;
-  for (PossibleShape& shape : possible) {
+  for (const Curve& shape : common) {
     const auto is_same = [&](const std::vector<Vec3>& other) {
-      return std::abs(polyline_length(other) - polyline_length(shape.samples)) < 2.0 * radius &&
-             lies_on(shape.samples, other, radius);
+      return std::abs(polyline_length(other) - shape.length) < 2.0 * radius && lies_on(shape.samples, other, radius);
     };
-    if (distinct.size() < kMost && std::ranges::none_of(distinct, is_same))
-      distinct.push_back(std::move(shape.samples));
+    if (distinct.size() < kMost && std::ranges::none_of(distinct, is_same)) distinct.push_back(shape.samples);
   }
   return distinct;
 }

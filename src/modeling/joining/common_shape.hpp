@@ -8,10 +8,10 @@
 
 namespace tubebin::modeling {
 
-/// The centrelines, by samples every half radius, that many of the scene's tubes may have, the likeliest first, at most three:
-/// those of `whole`, the centrelines of tubes in sight from end to end, that as much of the `pieces` lies on as makes two
-/// tubes. They bend by at least two diameters, since straight tubes are all alike.
-std::vector<std::vector<Vec3>> possible_shapes(std::span<const std::vector<Vec3>> whole,
+/// The shapes that many of the scene's tubes may have, by samples every half radius, the longest first, at most five: the
+/// centrelines among `tubes` that as much of the `pieces` lies on as makes two tubes, and two fifths of those that are long
+/// enough to tell. They bend by at least two diameters, since straight tubes are all alike.
+std::vector<std::vector<Vec3>> possible_shapes(std::span<const std::vector<Vec3>> tubes,
                                                std::span<const TubePiece> pieces);
 
 }  // namespace tubebin::modeling

@@ -140,23 +140,21 @@ std::vector<TubePath> paths_of(const Cover& cover) {
   return paths;
 }
 
-/// The centrelines of the tubes that are in sight from end to end, or nearly so.
-std::vector<std::vector<Vec3>> whole_tubes(const Cover& cover) {
-  const auto is_seen = [&](std::uint32_t end) { return cover.graph.ends[end].seen_free > 0.5; };
-  std::vector<std::vector<Vec3>> whole;
+/// The centrelines of the tubes that are seen for the most part, as far as they are seen.
+std::vector<std::vector<Vec3>> seen_tubes(const Cover& cover) {
+  std::vector<std::vector<Vec3>> tubes;
   for (const Chain& chain : cover.chains)
-    if (is_seen(chain.first_end) && is_seen(chain.last_end) && chain.bridged < chain.length / 8.0)
-      whole.push_back(path_of(chain, cover.graph).nodes);
-  return whole;
+    if (chain.bridged < chain.length / 8.0) tubes.push_back(path_of(chain, cover.graph).nodes);
+  return tubes;
 }
 
-/// Copies of the shape that explains the scene best, where one explains half of all that is seen of tubes.
+/// Copies of the shape that explains the scene best, where one explains three quarters of all that is seen of tubes.
 std::optional<ShapeJoining> with_common_shape(const Cover& cover, const std::vector<TubePiece>& pieces,
                                               const OcclusionTest& occlusion) {
   std::optional<ShapeJoining> best;
-  for (const std::vector<Vec3>& shape : possible_shapes(whole_tubes(cover), pieces)) {
+  for (const std::vector<Vec3>& shape : possible_shapes(seen_tubes(cover), pieces)) {
     ShapeJoining joining = join_by_shape(pieces, shape, occlusion);
-    if (joining.explained < 0.5 || (best && joining.cost >= best->cost)) continue;
+    if (joining.explained < 0.75 || (best && joining.cost >= best->cost)) continue;
     best = std::move(joining);
   }
   return best;
