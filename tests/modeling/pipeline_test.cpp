@@ -246,6 +246,32 @@ TEST(Pipeline, ARigidMotionOfTheInputMovesTheResultWithIt) {
   }
 }
 
+TEST(Pipeline, WhatStandsAroundAKnownBinIsNoTube) {
+  scene::Scene scene = one_over_three();
+  const double floor = -scene.bin.wall_thickness;
+  scene.surroundings =
+      scene::Surroundings{.table = {.position = {0, 0, floor - 0.03}, .yaw_deg = 0.0, .size = {1.6, 1.2, 0.03}},
+                          .boxes = {{.position = {0.5, 0.1, floor}, .yaw_deg = 20.0, .size = {0.2, 0.15, 0.4}},
+                                    {.position = {-0.45, -0.2, floor}, .yaw_deg = -10.0, .size = {0.15, 0.2, 0.35}}},
+                          .cylinders = {},
+                          .bins = {}};
+  scene.scanner.region = scene::ScanRegion::full;
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), ModelingOptions{});
+  EXPECT_EQ(result.tubes.size(), 4u);
+  EXPECT_NEAR(result.radius, kR, 0.01 * kR);
+  EXPECT_LT(result.found.unexplained, 0.2);
+  std::size_t of_tubes = 0, found = 0, false_points = 0;
+  for (const cloud::Label label : cloud.labels) of_tubes += label > 0;
+  for (std::size_t i = 0; i < result.source.size(); ++i) {
+    const bool is_tube = cloud.labels[result.source[i]] > 0;
+    found += is_tube && result.labels[i] > 0;
+    false_points += !is_tube && result.labels[i] > 0;
+  }
+  EXPECT_GT(found, 0.97 * static_cast<double>(of_tubes));  // the others lie next to the floor
+  EXPECT_LT(false_points, 0.005 * static_cast<double>(of_tubes));
+}
+
 TEST(Pipeline, FindsTheTubesInABinThatNobodyDescribes) {
   const scene::Scene scene = one_over_three();
   const cloud::Cloud cloud = scan::scan(scene).cloud;
