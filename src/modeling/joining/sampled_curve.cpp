@@ -55,15 +55,17 @@ Pose best_motion(std::span<const Vec3> from, std::span<const Vec3> to) {
 }
 
 double distance_apart(std::span<const Vec3> from, const std::vector<Vec3>& to, Pose motion) {
-  constexpr int kRounds = 8;
+  constexpr int kMostRounds = 8;
   double squares = 0.0;
   std::vector<Vec3> nearest(from.size());
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMostRounds; ++round) {
+    const double before = squares;
     squares = 0.0;
     for (std::size_t k = 0; k < from.size(); ++k) {
       nearest[k] = nearest_on_polyline(motion * from[k], to);
       squares += (motion * from[k] - nearest[k]).squaredNorm();
     }
+    if (round > 0 && squares > 0.9 * before) break;
     motion = best_motion(from, nearest);
   }
   return std::sqrt(squares / static_cast<double>(from.size()));
