@@ -23,15 +23,8 @@ bool has_same_chords(std::span<const Vec3> a, std::span<const Vec3> b, double ra
          std::abs(chord(a, middle, last) - chord(b, middle, last)) < 2.0 * radius;
 }
 
-/// Mean square of the distances of pairs, square metres.
-double squared_distance(std::span<const Vec3> from, std::span<const Vec3> to, const Pose& motion) {
-  double squares = 0.0;
-  for (std::size_t k = 0; k < from.size(); ++k) squares += (motion * from[k] - to[k]).squaredNorm();
-  return squares / static_cast<double>(from.size());
-}
-
 /// Whether the piece's samples lie on a part of the shape. Of two curves by chance alike, the more they bend the fewer: a
-/// twentieth of the bend is what parts of one kind agree to.
+/// twelfth of the bend is what parts of one kind agree to.
 bool lies_on(std::vector<Vec3> piece, const std::vector<Vec3>& shape, double radius) {
   const double agreed = std::min(radius / 2.0, sagitta(piece) / 12.0);
   const auto length = static_cast<std::ptrdiff_t>(piece.size()), all = static_cast<std::ptrdiff_t>(shape.size());
@@ -43,7 +36,8 @@ bool lies_on(std::vector<Vec3> piece, const std::vector<Vec3>& shape, double rad
       const std::span<const Vec3> own(piece.data() + (inside - first), part.size());
       if (!has_same_chords(own, part, radius)) continue;
       const Pose motion = best_motion(own, part);
-      if (squared_distance(own, part, motion) > 4.0 * radius * radius) continue;  // places along it are off by as much
+      if (mean_squared_distance(own, part, motion) > 4.0 * radius * radius)
+        continue;  // places along it are off by as much
       if (distance_apart(piece, shape, motion) < agreed) return true;
     }
   }

@@ -54,6 +54,12 @@ Pose best_motion(std::span<const Vec3> from, std::span<const Vec3> to) {
   return Pose(Eigen::umeyama(a, b, false));
 }
 
+double mean_squared_distance(std::span<const Vec3> from, std::span<const Vec3> to, const Pose& motion) {
+  double squares = 0.0;
+  for (std::size_t k = 0; k < from.size(); ++k) squares += (motion * from[k] - to[k]).squaredNorm();
+  return squares / static_cast<double>(from.size());
+}
+
 double distance_apart(std::span<const Vec3> from, const std::vector<Vec3>& to, Pose motion) {
   constexpr int kMostRounds = 8;
   double squares = 0.0;

@@ -19,6 +19,9 @@ double sagitta(std::span<const Vec3> samples);
 /// transformation parameters between two point patterns"). As many of both, at least one.
 Pose best_motion(std::span<const Vec3> from, std::span<const Vec3> to);
 
+/// Of the pairs once `motion` has brought `from` to `to`, square metres.
+double mean_squared_distance(std::span<const Vec3> from, std::span<const Vec3> to, const Pose& motion);
+
 /// Root mean square, metres, of the distances of `from` from the polyline `to` once `motion` has brought it there and
 /// iterative closest points (Besl and McKay 1992) nearer still.
 double distance_apart(std::span<const Vec3> from, const std::vector<Vec3>& to, Pose motion);

@@ -47,11 +47,9 @@ class CopyFinder {
   void place_along(const std::vector<Vec3>& samples) {
     for (std::size_t first = 0; first + samples.size() <= shape_.size() + 2; first += 2) {
       const std::size_t count = std::min(samples.size(), shape_.size() - first);
-      const std::span<const Vec3> along(shape_.data() + first, count);
-      const Pose pose = best_motion(along, {samples.data(), count});
-      double squares = 0.0;
-      for (std::size_t k = 0; k < count; ++k) squares += (pose * along[k] - samples[k]).squaredNorm();
-      if (squares > 0.25 * radius_ * radius_ * static_cast<double>(count)) continue;
+      const std::span<const Vec3> along(shape_.data() + first, count), shown(samples.data(), count);
+      const Pose pose = best_motion(along, shown);
+      if (mean_squared_distance(along, shown, pose) > 0.25 * radius_ * radius_) continue;
       consider(pose);
       turn_about(samples, pose);
     }
