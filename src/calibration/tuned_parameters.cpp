@@ -61,7 +61,6 @@ std::vector<TunedParameter> default_parameters(modeling::ModelingMethod method) 
   if (method == modeling::ModelingMethod::centerline) return {};
   return {{"region_growing.neighbors", whole_factors(8, 60)},
           {"region_growing.smoothness_deg", factors(3, 30)},
-          {"region_growing.curvature_max", factors(0.01, 0.33)},
           {"region_growing.region_size_min", whole_factors(5, 200)},
           {"region_growing.ransac_iterations", whole_factors(30, 1000)},
           {"region_growing.inlier_distance", factors(0.03, 0.5)},

@@ -43,6 +43,11 @@ class Reader : public Fields {
     check_keys_once();
   }
 
+  void removed(const char* key, const char* why) override {
+    const YamlValue found = mapping_.at(key);
+    if (found.node)
+      throw_config_error("{}: {}: is no key any more, since it {}; remove it", found.place(), found.key_path, why);
+  }
   void randomized(Distributions& distributions) override { distributions_ = &distributions; }
   void number(const char* key, double& value, Limits limits, const char* unit, const char*) override {
     if (const auto found = find(key)) read_number(*found, value, limits, unit);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/json_reader.hpp"
+#include "results/setting_names.hpp"
 #include "tubebin/core/confined_path.hpp"
 
 namespace tubebin::results {
@@ -81,7 +82,9 @@ ResultsIndex merge_results_index(const ResultsIndex& held, ResultsIndex wanted, 
   require_same("tool_version", held.tool_version, wanted.tool_version);
   require_same("dataset", held.dataset, wanted.dataset);
   require_same("seed", held.seed, wanted.seed);
-  require_same("options", without_run(held.options), without_run(wanted.options));
+  if (without_run(held.options) != without_run(wanted.options))
+    throw_config_error("{}: these results were made with other options ({}); choose another --output", path,
+                       describe_difference(held, wanted));
   add_missing(held.methods, wanted.methods);
   add_missing(held.ratios, wanted.ratios);
   add_missing(held.scenes, wanted.scenes);

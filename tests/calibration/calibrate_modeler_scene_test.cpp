@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include "calibration/calibration_trials.hpp"
 #include "support/faults.hpp"
 #include "tubebin/calibration/calibration.hpp"
 #include "tubebin/results/results_folder.hpp"
@@ -150,6 +151,26 @@ TEST_F(CalibrateModeler, TunesNamedParametersAlone) {
   EXPECT_LE(tuned.modeling.region_growing.neighbors, 30);
   EXPECT_EQ(tuned.modeling.region_growing.smoothness_deg, defaults.modeling.region_growing.smoothness_deg);
   EXPECT_EQ(tuned.modeling.method, modeling::ModelingMethod::region_growing);
+}
+
+TEST_F(CalibrateModeler, TunesNothingThatHasNoEffect) {
+  const results::CloudToModel input = results::read_cloud_to_model(TUBEBIN_SOURCE_DIR "/data/A10/003/cloud.pcd");
+  results::ModelConfig config;
+  config.modeling.method = modeling::ModelingMethod::region_growing;
+  config.modeling.filtering.ratio = 0.3;
+  const auto labels_with = [&](const std::string& key, double value) {
+    return results::model_cloud(input, apply_setting(config, {{.key = key, .range = {}}}, {value})).labels;
+  };
+  for (const TunedParameter& parameter : default_parameters(config.modeling.method))
+    EXPECT_NE(labels_with(parameter.key, parameter.range.low), labels_with(parameter.key, parameter.range.high))
+        << parameter.key;
+}
+
+TEST_F(CalibrateModeler, SaysThatAParameterOfEarlierVersionsWent) {
+  write_text(file("old.yaml"), "method: region_growing\nregion_growing:\n  curvature_max: 0.05\n");
+  const ProgramResult result = run(command(file("of_old.yaml")), {"--config", file("old.yaml")});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.error, HasSubstr("old.yaml:3:18: region_growing.curvature_max: is no key any more"));
 }
 
 TEST_F(CalibrateModeler, RefusesWhatCannotBeMeant) {

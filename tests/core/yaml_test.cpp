@@ -22,6 +22,7 @@ void describe(Fields& fields, Options& o) {
   fields.group("tube", "the tube", [&](Fields& tube) {
     tube.number("radius", o.radius, {0.1, 1.0}, "m", "how thick");
     tube.integer("count", o.count, {1, 10}, "", "how many");
+    tube.removed("weight", "changed nothing");
   });
   fields.flag("on", o.on, "whether");
   fields.seed("seed", o.seed, "randomness");
@@ -84,6 +85,14 @@ TEST(Yaml, SuggestsTheKeyThatWasMeant) {
   EXPECT_THAT(error_of("tube:\n  radios: 0.2"), HasSubstr("test.yaml:2:3: tube.radios: unknown key, did you mean "
                                                           "'radius'?; valid here: count, radius"));
   EXPECT_THAT(error_of("zzzzzzzz: 1"), ::testing::Not(HasSubstr("did you mean")));
+}
+
+TEST(Yaml, SaysWhyAKeyWentAndShowsItToNobodyElse) {
+  EXPECT_EQ(error_of("tube:\n  weight: 2"),
+            "test.yaml:2:11: tube.weight: is no key any more, since it changed nothing; remove it");
+  EXPECT_THAT(error_of("tube: {wait: 2}"), HasSubstr("valid here: count, radius"));
+  Options o;
+  EXPECT_THAT(write_yaml([&](Fields& f) { describe(f, o); }), ::testing::Not(HasSubstr("weight")));
 }
 
 TEST(Yaml, RefusesDuplicateKeysAndWhatIsNoMapping) {

@@ -109,6 +109,23 @@ TEST_F(ModelTubes, GoesOnWhereItStoppedAndRefusesOtherOptions) {
   EXPECT_THAT(other.error, HasSubstr("seed"));
 }
 
+TEST_F(ModelTubes, NamesTheOptionsThatResultsWereMadeWithOtherwise) {
+  const std::string dataset = make_dataset({"A10/001"});
+  const std::string out = folder_ / "out";
+  ASSERT_EQ(model_tubes({dataset, "--output", out, "--ratios", "0.1", "--quiet"}).exit_code, 0);
+  const ProgramResult other =
+      model_tubes({dataset, "--output", out, "--ratios", "0.1", "--radius", "0.012", "--quiet"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.error, HasSubstr("other options (radius: estimated and radius: 0.012); choose another --output"));
+  // An option that a later version no longer has.
+  json index = json::parse(read_text(out + "/index.json"));
+  index["options"]["region_growing"]["gone"] = 0.2;
+  write_text(out + "/index.json", index.dump());
+  EXPECT_THAT(model_tubes({dataset, "--output", out, "--ratios", "0.1", "--quiet"}).error,
+              HasSubstr("other options (region_growing.gone: 0.2 and region_growing.gone: none)"));
+  EXPECT_EQ(Program({program_path("evaluate"), out}).wait().exit_code, 0);
+}
+
 TEST_F(ModelTubes, ABadCloudIsReportedAndTheOthersAreDone) {
   const std::string dataset = make_dataset({"A10/001", "A10/002"});
   write_text(dataset + "/A10/001/cloud.pcd", "no cloud");

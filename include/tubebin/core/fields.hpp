@@ -25,6 +25,9 @@ class Fields {
  public:
   virtual ~Fields() = default;
 
+  /// A key that earlier versions had; `why` says of it why it went.
+  virtual void removed(const char* /*key*/, const char* /*why*/) {}
+
   /// The numbers that are described from here on may be left open, to be drawn: `distributions` says which are.
   virtual void randomized(Distributions& /*distributions*/) {}
 

@@ -12,7 +12,6 @@ namespace tubebin::modeling {
 struct RegionGrowingOptions {
   int neighbors = 20;             ///< of a point, for growing
   double smoothness_deg = 12.0;   ///< between neighbours' normals in one region, a cylinder's and its points'
-  double curvature_max = 0.2;     ///< no effect: regions grow by normals alone
   int region_size_min = 20;       ///< points
   int ransac_iterations = 100;    ///< a cylinder
   double inlier_distance = 0.15;  ///< of the radius: how far a cylinder's points may be off its surface

@@ -58,7 +58,7 @@ void describe(Fields& fields, RegionGrowingOptions& options) {
   fields.number(
       "smoothness_deg", options.smoothness_deg, {0.1, 90.0}, "degrees",
       "largest angle between the normals of neighbours in one region, and of a cylinder's points with its side's");
-  fields.number("curvature_max", options.curvature_max, {0.0, 1.0}, "", "no effect: regions grow by normals alone");
+  fields.removed("curvature_max", "never had an effect: regions grow by normals alone");
   fields.integer("region_size_min", options.region_size_min, {3, 1000000}, "points",
                  "smaller regions and cylinders are left out");
   fields.integer("ransac_iterations", options.ransac_iterations, {1, 1000000}, "", "of the search for one cylinder");
