@@ -1,11 +1,12 @@
-"""What it costs to load clouds from packs in either PCD encoding and from exported NPZ files, as a Markdown table.
+"""What it costs to load scenes from packs, as clouds in either PCD encoding and as depth images, and from exported NPZ files,
+as a Markdown table.
 
-  loading_table.py BUILD [--tubes 10] [--cases 60] [--rounds 5] [--seed 1] [--folder FOLDER]
+  loading_table.py BUILD [--config CONFIG] [--tubes 10] [--cases 60] [--rounds 5] [--seed 1] [--folder FOLDER]
 
-Makes the same data set in either encoding, packed, by BUILD/bin/generate_dataset, and NPZ of it by export_dataset. One process
-loads all clouds, in turn, with tubebin.Dataset, which has the programs' reader, or np.load: first from FOLDER's disk, as the
-system was told to forget the files, which takes wall-clock time, then from memory, which takes the processor's. Medians of the
-rounds. Needs tubebin and numpy.
+Makes the same data set in either encoding, packed, with depth images, by BUILD/bin/generate_dataset, and NPZ of it by
+export_dataset. One process loads all scenes, in turn, with tubebin.Dataset, which has the programs' reader, or np.load: first
+from FOLDER's disk, as the system was told to forget the files, which takes wall-clock time, then from memory, which takes the
+processor's. Medians of the rounds. MB are those of the files that are loaded. Needs tubebin and numpy.
 """
 
 import argparse
@@ -13,6 +14,7 @@ import os
 import pathlib
 import statistics
 import subprocess
+import tarfile
 import tempfile
 import time
 
@@ -27,14 +29,20 @@ def run(build, program, *words):
 
 def make(arguments, folder, encoding):
     config = folder / f"{encoding}.yaml"
-    config.write_text(f"output: {{format: {encoding}}}\n")
+    config.write_text(f"include: {arguments.config.resolve()}\n"
+                      f"output: {{format: {encoding}, depth_image: true, clean_cloud: false}}\n")
     size = ["--tubes", arguments.tubes, "--cases", arguments.cases, "--seed", arguments.seed]
     run(arguments.build, "generate_dataset", config, "--output", folder / encoding, "--pack", *size)
 
 
-def load_dataset(folder):
+def load_clouds(folder):
     for sample in tubebin.Dataset(folder):
         yield sample.cloud.points, sample.cloud.labels
+
+
+def load_depth_images(folder):
+    for sample in tubebin.Dataset(folder):
+        yield sample.depth_image.depth, sample.depth_image.labels
 
 
 def load_npz(folder):
@@ -51,6 +59,14 @@ def forget(folder):
                 os.posix_fadvise(file.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
 
 
+def sizes(folder):
+    """Bytes by name of all files, and of those in packs."""
+    for path in filter(pathlib.Path.is_file, folder.rglob("*")):
+        yield path.name, path.stat().st_size
+        if path.suffix == ".tar":
+            yield from ((member.name, member.size) for member in tarfile.open(path))
+
+
 def milliseconds(clock, load, folder):
     start = clock()
     count = sum(1 for _ in load(folder))
@@ -59,6 +75,7 @@ def milliseconds(clock, load, folder):
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("build")
+parser.add_argument("--config", type=pathlib.Path, default=pathlib.Path(__file__).parents[2] / "config/set_a.yaml")
 for name, value in [("tubes", 10), ("cases", 60), ("rounds", 5), ("seed", 1)]:
     parser.add_argument(f"--{name}", type=int, default=value)
 parser.add_argument("--folder", help="where the data sets are made; the temporary folder")
@@ -66,18 +83,23 @@ arguments = parser.parse_args()
 
 with tempfile.TemporaryDirectory(dir=arguments.folder) as name:
     work = pathlib.Path(name)
-    loaders = {"pcd_binary": load_dataset, "pcd_compressed": load_dataset, "npz": load_npz}
+    kinds = [  # title, folder, loader, ends of the names of what is loaded
+        ("`pcd_binary`, packed", "pcd_binary", load_clouds, "cloud.pcd"),
+        ("`pcd_compressed`, packed", "pcd_compressed", load_clouds, "cloud.pcd"),
+        ("depth images, packed", "pcd_binary", load_depth_images, ("depth.png", "labels.png")),
+        ("NPZ of `export_dataset`, `np.load`", "npz", load_npz, ".npz"),
+    ]
     for encoding in ("pcd_binary", "pcd_compressed"):
         make(arguments, work, encoding)
     run(arguments.build, "export_dataset", work / "pcd_binary", "--format", "npz", "--output", work / "npz")
-    memory, disk = {kind: [] for kind in loaders}, {kind: [] for kind in loaders}
+    memory, disk = {title: [] for title, *_ in kinds}, {title: [] for title, *_ in kinds}
     for _ in range(arguments.rounds):
-        for kind, load in loaders.items():
-            forget(work / kind)
-            disk[kind].append(milliseconds(time.perf_counter, load, work / kind))
-            memory[kind].append(milliseconds(time.process_time, load, work / kind))
-    print("| clouds | MB a scene | from memory, CPU ms a cloud | from the disk, ms a cloud |\n| --- | ---: | ---: | ---: |")
-    for kind in loaders:
-        size = sum(path.stat().st_size for path in (work / kind).rglob("*") if path.is_file()) / 1e6 / arguments.cases
-        times = f"{statistics.median(memory[kind]):.1f} | {statistics.median(disk[kind]):.1f}"
-        print(f"| `{kind}` | {size:.2f} | {times} |")
+        for title, data, load, _ends in kinds:
+            forget(work / data)
+            disk[title].append(milliseconds(time.perf_counter, load, work / data))
+            memory[title].append(milliseconds(time.process_time, load, work / data))
+    print("| loaded | MB a scene | from memory, CPU ms a scene | from the disk, ms a scene |\n| --- | ---: | ---: | ---: |")
+    for title, data, _load, ends in kinds:
+        size = sum(size for name, size in sizes(work / data) if name.endswith(ends)) / 1e6 / arguments.cases
+        times = f"{statistics.median(memory[title]):.1f} | {statistics.median(disk[title]):.1f}"
+        print(f"| {title} | {size:.2f} | {times} |")

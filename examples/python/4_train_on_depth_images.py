@@ -14,9 +14,8 @@ CLASSES = ["bin", "tube", "edge"]  # edge: the next pixel to the left or above h
 
 def depth_and_classes(sample):
     """Depth (1, H, W), decimetres from the nearest point, and CLASSES of the pixels (H, W)."""
-    points, labels = torch.from_numpy(sample.cloud.points), torch.from_numpy(sample.cloud.labels.astype("int64"))
-    pose = torch.from_numpy(sample.cloud.viewpoint).float()
-    depth = (points - pose[:3, 3]) @ pose[:3, 2]
+    depth = torch.from_numpy(sample.depth_image.depth)
+    labels = torch.from_numpy(sample.depth_image.labels.astype("int64"))
     edge = (labels != labels.roll(1, 0)) | (labels != labels.roll(1, 1))
     return 10 * (depth - depth.min())[None], torch.where(edge, 2, (labels > 0).long())
 

@@ -11,6 +11,7 @@ namespace tubebin::python {
 namespace {
 
 using RowMajor4d = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+using RowMajor3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 template <typename Value>
 std::vector<std::uint32_t> checked_ids(const IdArray& array, const char* name) {
@@ -82,6 +83,12 @@ Array<double> array_of(const Pose& pose) {
   auto values = std::make_unique<double[]>(16);
   Eigen::Map<RowMajor4d>(values.get()) = pose.matrix();
   return owning_array(std::move(values), {4, 4});
+}
+
+Array<double> array_of(const Eigen::Matrix3d& matrix) {
+  auto values = std::make_unique<double[]>(9);
+  Eigen::Map<RowMajor3d>(values.get()) = matrix;
+  return owning_array(std::move(values), {3, 3});
 }
 
 }  // namespace tubebin::python

@@ -13,6 +13,7 @@ namespace tubebin::python {
 namespace nb = nanobind;
 
 void bind_cloud(nb::module_& module);
+void bind_depth_image(nb::module_& module);
 void bind_scene(nb::module_& module);
 void bind_dataset(nb::module_& module);
 void bind_model(nb::module_& module);
@@ -45,7 +46,8 @@ Array<Value> per_point(std::vector<Value>& values, std::size_t height, std::size
 
 /// Polyline as an array N x 3 of its own.
 Array<double> array_of(const std::vector<Vec3>& nodes);
-/// Pose as an array 4 x 4 of its own.
+/// Pose as an array 4 x 4, matrix as an array 3 x 3 of its own.
 Array<double> array_of(const Pose& pose);
+Array<double> array_of(const Eigen::Matrix3d& matrix);
 
 }  // namespace tubebin::python

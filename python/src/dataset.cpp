@@ -3,6 +3,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "depth_image.hpp"
 #include "scene.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/results/cloud_files.hpp"
@@ -31,6 +32,13 @@ cloud::Cloud read_cloud(const DatasetFiles& files, const std::string& name) {
                                   scene ? scene->record : scene::SceneRecord{});
 }
 
+DepthImage read_depth_image(const DatasetFiles& files, const std::string& name) {
+  const std::optional<Scene> scene = read_scene(files, name);
+  if (!scene)
+    throw_io_error("{}: has no scene.json, and so no camera for a depth image", files.place(name, "scene.json"));
+  return {scene::read_depth_image(files, name, scene->record), scene->record};
+}
+
 }  // namespace
 
 void bind_dataset(nb::module_& module) {
@@ -39,6 +47,7 @@ void bind_dataset(nb::module_& module) {
       .def(nb::init<const std::string&>(), nb::arg("folder"), without_lock)
       .def("names", &names_of, without_lock)
       .def("read_cloud", &read_cloud, nb::arg("name"), without_lock)
+      .def("read_depth_image", &read_depth_image, nb::arg("name"), without_lock)
       .def("read_scene", &read_scene, nb::arg("name"), without_lock);
 }
 

@@ -9,6 +9,7 @@ NB_MODULE(_core, module) {
   const nanobind::exception<IoError> io_error(module, "IoError", PyExc_OSError);
   const nanobind::exception<ConfigError> config_error(module, "ConfigError", PyExc_ValueError);
   python::bind_cloud(module);
+  python::bind_depth_image(module);
   python::bind_scene(module);
   python::bind_dataset(module);
   python::bind_model(module);

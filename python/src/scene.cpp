@@ -3,6 +3,7 @@
 
 #include <nanobind/stl/string.h>
 
+#include "depth_image.hpp"
 #include "tubebin/core/error.hpp"
 #include "tubebin/core/version.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
@@ -80,7 +81,13 @@ void bind_scene(nb::module_& module) {
           "covers whom. docs/scene.schema.json describes it; json.loads makes it a dict.")
       .def("scan", &scan, nb::call_guard<nb::gil_scoped_release>(),
            "What the scene's scanners see: a labelled Cloud of its own, organized where there is one scanner. Exact "
-           "rays, and the configuration's scanner effects; the same bytes each time.");
+           "rays, and the configuration's scanner effects; the same bytes each time.")
+      .def(
+          "depth_image",
+          [](const Scene& self) { return DepthImage(scene::depth_image(scan(self), self.record), self.record); },
+          nb::call_guard<nb::gil_scoped_release>(),
+          "The same as a DepthImage, with the depths of depth.png, which are rounded to 0.1 mm (in the paper's scene). "
+          "Raises IoError where the cloud is not organized.");
   module.def("generate", &generate, nb::arg("config"), nb::arg("request"), nb::call_guard<nb::gil_scoped_release>());
 }
 

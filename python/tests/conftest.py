@@ -29,6 +29,17 @@ def run() -> Run:
 
 
 @pytest.fixture(scope="session")
+def depth_dataset(run: Run, tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+    """Scenes A3/001 and A3/002, packed, of a scanner with noise, with depth images."""
+    folder = tmp_path_factory.mktemp("data")
+    config = folder / "config.yaml"
+    noisy = CONFIG.with_name("scanner_zivid_like.yaml")
+    config.write_text(f"include: {noisy}\noutput: {{depth_image: true, clean_cloud: false}}\n")
+    run("generate_dataset", config, "--output", folder / "d", "--tubes", "3", "--cases", "2", "--pack", "--quiet")
+    return folder / "d"
+
+
+@pytest.fixture(scope="session")
 def dataset(run: Run, tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
     """Scenes A3/001, A3/002, A10/001 and A10/002 of seed 7."""
     folder = tmp_path_factory.mktemp("data") / "loose"

@@ -27,14 +27,14 @@ def folder(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_page_runs(capsys: pytest.CaptureFixture[str]) -> None:
     run_blocks(uses_torch=False)
-    assert len(capsys.readouterr().out.splitlines()) == 13
+    assert len(capsys.readouterr().out.splitlines()) == 16
 
 
 def test_what_needs_torch_runs(capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("torch")
     run_blocks(uses_torch=True)
-    names = [line.split()[0] for line in capsys.readouterr().out.splitlines()]
-    assert names[:4] == ["A5/001", "A10/001", "A5/002", "A10/002"] and len(names) == 5
+    words = [line.split()[0] for line in capsys.readouterr().out.splitlines()]
+    assert words[:4] == ["A5/001", "A10/001", "A5/002", "A10/002"] and len(words) == 6
 
 
 def test_only_who_asks_for_it_needs_torch() -> None:

@@ -88,6 +88,16 @@ def test_a_dataset_is_read_by_workers_loose_and_packed(dataset: pathlib.Path, ru
             np.testing.assert_array_equal(sample["labels"].numpy(), there.cloud.labels)
 
 
+def test_depth_images_come_in_tensors(depth_dataset: pathlib.Path) -> None:
+    scenes = tubebin.torch.Dataset(depth_dataset, transform=tubebin.torch.depth_tensors)
+    samples = list(data.DataLoader(scenes, batch_size=None, num_workers=2))
+    assert [sample["name"] for sample in samples] == ["A3/001", "A3/002"]
+    for sample, there in zip(samples, tubebin.Dataset(depth_dataset)):
+        np.testing.assert_array_equal(sample["depth"].numpy(), there.depth_image.depth)
+        np.testing.assert_array_equal(sample["labels"].numpy(), there.cloud.labels)
+        assert sample["labels"].dtype == torch.int64 and sample["intrinsics"].shape == (3, 3)
+
+
 @pytest.fixture(scope="module")
 def many(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
     """300 clouds of one point; the last fifty are steps of ten piles."""

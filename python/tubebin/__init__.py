@@ -20,6 +20,7 @@ from ._config import Config, as_json, core_config, core_model_config
 from ._core import (
     Cloud,
     ConfigError,
+    DepthImage,
     Evaluation,
     GenerationError,
     IoError,
@@ -37,6 +38,7 @@ __all__ = [
     "Config",
     "ConfigError",
     "Dataset",
+    "DepthImage",
     "Evaluation",
     "GenerationError",
     "IoError",

@@ -14,16 +14,29 @@ class Sample:
     """One scene with its cloud; those of a data set are read when they are asked for."""
 
     def __init__(
-        self, name: str, cloud: Callable[[], _core.Cloud], scene: Callable[[], _core.Scene | None]
+        self,
+        name: str,
+        cloud: Callable[[], _core.Cloud],
+        depth_image: Callable[[], _core.DepthImage],
+        scene: Callable[[], _core.Scene | None],
     ) -> None:
         self.name = name  #: "A10/007": set A, ten tubes, case 7
         self._cloud = cloud
+        self._depth_image = depth_image
         self._scene = scene
 
     @cached_property
     def cloud(self) -> _core.Cloud:
         """The cloud as it was written, with the ground truth's labels. Raises IoError."""
         return self._cloud()
+
+    @cached_property
+    def depth_image(self) -> _core.DepthImage:
+        """The cloud's pixels as an image: depth.png and labels.png, or the same from the cloud where they are not there.
+
+        Raises IoError, also where the cloud is not organized.
+        """
+        return self._depth_image()
 
     @cached_property
     def scene(self) -> _core.Scene | None:
@@ -61,4 +74,10 @@ class Dataset(Sequence[Sample]):
         return (type(self), (self.folder,))  # for processes of its own, as a data loader starts them
 
     def _sample(self, name: str) -> Sample:
-        return Sample(name, partial(self._files.read_cloud, name), partial(self._files.read_scene, name))
+        files = self._files
+        return Sample(
+            name,
+            partial(files.read_cloud, name),
+            partial(files.read_depth_image, name),
+            partial(files.read_scene, name),
+        )

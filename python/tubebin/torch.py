@@ -25,7 +25,7 @@ except ImportError as error:
 from . import _core, _dataset, generate
 from ._config import Config, core_config
 
-__all__ = ["Dataset", "Scenes", "tensors"]
+__all__ = ["Dataset", "Scenes", "depth_tensors", "tensors"]
 
 Transform = Callable[[_dataset.Sample], Any]
 
@@ -39,6 +39,20 @@ def tensors(sample: _dataset.Sample) -> dict[str, Any]:
     if sample.cloud.labels is None:
         return points
     return {**points, "labels": torch.from_numpy(sample.cloud.labels.astype(np.int64))}
+
+
+def depth_tensors(sample: _dataset.Sample) -> dict[str, Any]:
+    """name; depth (H, W) float32, metres along the optical axis, 0 of no hit; labels (H, W) int64; intrinsics (3, 3) float64.
+
+    A transform for data sets with `output.depth_image`, of which it reads no cloud, and for those without. Sizes as of tensors.
+    """
+    image = sample.depth_image
+    return {
+        "name": sample.name,
+        "depth": torch.from_numpy(image.depth),
+        "labels": torch.from_numpy(image.labels.astype(np.int64)),
+        "intrinsics": torch.from_numpy(image.intrinsics),
+    }
 
 
 class Scenes(data.IterableDataset[Any]):
@@ -94,7 +108,7 @@ class Scenes(data.IterableDataset[Any]):
     def _simulate(self, position: int) -> _dataset.Sample:
         case, which = divmod(position, len(self._tubes))
         scene = generate(self._config, self._tubes[which], self._seed, case=case + 1)
-        return _dataset.Sample(scene.id, scene.scan, lambda: scene)
+        return _dataset.Sample(scene.id, scene.scan, scene.depth_image, lambda: scene)
 
 
 class Dataset(data.Dataset[Any]):

@@ -56,6 +56,14 @@ void check_preview(const DatasetConfig& config, const KeyPlaces& places) {
                 "'true' is not possible: OSMesa, which draws, is missing, or was when this was built");
 }
 
+void check_depth_image(const DatasetConfig& config, const KeyPlaces& places) {
+  if (!config.output.depth_image) return;
+  constexpr auto kKey = "output.depth_image";
+  if (!config.scanners.empty()) places.fail(kKey, "'true' is not possible with `scanners`, whose cloud is no image");
+  if (config.scanner.region == scene::ScanRegion::tubes)
+    places.fail(kKey, "'true' is not possible with scanner.region 'tubes', whose cloud is no image; valid: bin, full");
+}
+
 int parse_count(const std::string& text, const std::string& whole) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -142,6 +150,8 @@ void describe(Fields& fields, DatasetConfig& config) {
     inner.flag(
         "clean_cloud", config.output.clean_cloud,
         "also write cloud_clean, the scene as exact rays see it, pixel by pixel the twin of a cloud with effects");
+    inner.flag("depth_image", config.output.depth_image,
+               "also write depth.png and labels.png, the cloud's pixels as images of 16 bits, for networks");
     inner.flag("preview", config.output.preview,
                "also render preview.png and ground_truth.png, the colours in the scanner's view");
   });
@@ -166,6 +176,7 @@ void check_numbers(const DatasetConfig& config, const KeyPlaces& places) {
   check_set_name(config, places);
   check_tubes_once(config, places);
   check_scene_count(config, places);
+  check_depth_image(config, places);
   if (config.kinds.empty()) check(config.tube, places, "tube");
   check(config.kinds, config.tubes, places);
   check(config.bin, places, "bin");

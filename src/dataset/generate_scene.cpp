@@ -8,17 +8,13 @@
 #include "tubebin/render/preview.hpp"
 #include "tubebin/scan/scanner.hpp"
 #include "tubebin/scan/visibility.hpp"
+#include "tubebin/scene/depth_image.hpp"
 
 namespace tubebin::dataset {
 namespace {
 
 constexpr int kPreviewWidth = 1280;
 constexpr int kPreviewHeight = 960;
-
-std::string png(const render::Image& image) {
-  const std::vector<std::uint8_t> bytes = render::encode_png(image);
-  return {bytes.begin(), bytes.end()};
-}
 
 bool has_point(const cloud::Cloud& cloud) {
   return std::any_of(cloud.points.begin(), cloud.points.end(), cloud::is_finite);
@@ -84,9 +80,17 @@ GeneratedScene show_pile(const Piles& piles, const SceneId& id) {
     clock.end_stage("clean_cloud");
   }
 
+  if (config.output.depth_image) {
+    const scene::DepthImage image = scene::depth_image(result.content.cloud, result.content.record);
+    result.content.record.depth_mm_per_unit = image.mm_per_unit;
+    result.content.images = scene::format_depth_image(image);
+    clock.end_stage("depth_image");
+  }
+
   if (config.output.preview) {
-    result.content.images["preview.png"] = png(render::render_preview(scene, kPreviewWidth, kPreviewHeight));
-    result.content.images["ground_truth.png"] = png(render::render_labels(scene, scanned.window));
+    const render::Image preview = render::render_preview(scene, kPreviewWidth, kPreviewHeight);
+    result.content.images["preview.png"] = render::encode_png(preview);
+    result.content.images["ground_truth.png"] = render::encode_png(render::render_labels(scene, scanned.window));
     clock.end_stage("preview");
   }
   return result;

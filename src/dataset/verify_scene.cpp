@@ -13,6 +13,7 @@
 #include "tubebin/core/file_record.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
 #include "tubebin/scan/scanner.hpp"
+#include "tubebin/scene/depth_image.hpp"
 #include "tubebin/scene/scene_json.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 
@@ -180,6 +181,20 @@ void check_clean_cloud(const cloud::Cloud& clean, const scene::SceneRecord& scen
     problems.push_back(fmt::format("{} points of cloud_clean are not the scene as exact rays see it", differing));
 }
 
+/// A cloud in the camera's frame or in millimetres was rounded anew: its depth may be one unit beside the image's.
+void compare_depth_image(const scene::DepthImage& found, const cloud::Cloud& cloud, const scene::SceneRecord& scene,
+                         Problems& problems) {
+  const scene::DepthImage expected = scene::depth_image(cloud, scene);
+  if (found.mm_per_unit != expected.mm_per_unit)
+    problems.push_back(fmt::format("scene.json has {} mm a unit of depth.png, its scanner's range gives {}",
+                                   found.mm_per_unit, expected.mm_per_unit));
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < expected.depths.size(); ++i)
+    differing += std::abs(found.depths[i] - expected.depths[i]) > 1 || found.labels[i] != expected.labels[i];
+  if (differing > 0)
+    problems.push_back(fmt::format("{} pixels of depth.png or labels.png are not those of the cloud", differing));
+}
+
 void check_contacts(const scene::SceneRecord& scene, const DatasetConfig& config, Problems& problems) {
   scene::Scene solid = scene.scene;  // bores are filled where tubes collide
   for (scene::PlacedTube& tube : solid.tubes) tube.tube.wall_thickness = 0.0;
@@ -271,6 +286,8 @@ void check_content(const scene::DatasetFiles& files, const DatasetConfig& undraw
   const cloud::Cloud cloud = parse(cloud_parser, std::string("cloud") + extension(config.output.format));
   check_cloud_layout(cloud, scene, problems);
   if (problems.empty()) check_cloud(cloud, scene, problems);
+  if (problems.empty() && scene.depth_mm_per_unit)
+    compare_depth_image(scene::read_depth_image(files, record.id, scene), cloud, scene, problems);
   if (config.output.clean_cloud)
     check_clean_cloud(parse(cloud_parser, std::string("cloud_clean") + extension(config.output.format)), scene,
                       problems);

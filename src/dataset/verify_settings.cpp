@@ -33,6 +33,8 @@ std::vector<std::string> check_settings(const scene::SceneRecord& scene, const D
   if (!has_scanners_of(scene.scene, config)) problems.emplace_back("scene.json has other scanners than config.yaml");
   if (scene.space != config.output.space)
     problems.emplace_back("scene.json has another frame or unit of the cloud than config.yaml");
+  if (scene.depth_mm_per_unit.has_value() != config.output.depth_image)
+    problems.emplace_back("scene.json has a depth image where config.yaml has none, or none where it has one");
   if (config.distributions.empty() || scene.lift) return problems;
   if (scene.drawn != draw_scene_numbers(config, scene.seed))
     return {"scene.json has other drawn numbers than its seed gives"};

@@ -1,13 +1,14 @@
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/json_reader.hpp"
+#include "core/png.hpp"
 #include "export/formats.hpp"
 #include "export/mask_encoder.hpp"
 #include "export/symmetries.hpp"
 #include "export/tube_mesh_file.hpp"
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/scene/depth_image.hpp"
 
 namespace tubebin::exports {
 namespace {
@@ -40,21 +41,6 @@ Json millimetres(const Vec3& vector) {
 
 Json box_json(const PixelBox& box) { return {box.x, box.y, box.width, box.height}; }
 
-/// Millimetres a unit of the depth image: the finest power of ten by which 16 bits hold the scanner's range.
-double depth_scale(const scene::Scanner& scanner) {
-  double scale = 0.1;
-  while (scanner.range_max * kMillimetres / scale > 65535.0) scale *= 10.0;
-  return scale;
-}
-
-Raster<std::uint16_t> depth_image(const Raster<float>& depths, double scale) {
-  Raster<std::uint16_t> image(depths.width, depths.height, 0);
-  for (std::size_t i = 0; i < depths.values.size(); ++i)
-    image.values[i] =
-        static_cast<std::uint16_t>(std::lround(static_cast<double>(depths.values[i]) * kMillimetres / scale));
-  return image;
-}
-
 Json camera_json(const SceneImage& image, double scale) {
   const Pose scanner_from_world = image.camera().world_from_scanner().inverse();
   return {{"0",
@@ -78,8 +64,8 @@ Json pose_json(const scene::PlacedTube& placed, const scene::Camera& camera, int
           {"cam_t_m2c", millimetres(scanner_from_tube.translation())}};
 }
 
-Json info_json(const Mask& whole, const Mask& visible, const Raster<float>& depths) {
-  const auto valid = std::ranges::count_if(whole.pixels, [&](std::uint32_t i) { return depths.values[i] > 0.0F; });
+Json info_json(const Mask& whole, const Mask& visible, const Raster<std::uint16_t>& depths) {
+  const auto valid = std::ranges::count_if(whole.pixels, [&](std::uint32_t i) { return depths.values[i] > 0; });
   const std::size_t all = whole.pixels.size(), seen = visible.pixels.size();
   return {{"bbox_obj", box_json(box_of(whole))},
           {"bbox_visib", box_json(box_of(visible))},
@@ -130,8 +116,8 @@ class BopFormat : public ExportFormat {
   SceneFiles export_scene(const SceneToExport& scene) const override {
     const SceneImage image(scene, region_);
     const scene::Camera& camera = image.camera();
-    const double scale = depth_scale(scene.record.scene.scanner);
-    const Raster<float> depths = image.depths();
+    const double scale = scene::DepthScale(scene.record.scene.scanner).mm_per_unit();
+    const Raster<std::uint16_t> depths = image.depths();
     const auto views = scan::view_tubes_alone(scene.record.scene);
     const std::vector<Mask> visible = image.visible_masks();
     const MaskEncoder masks(image.width(), image.height());
@@ -150,8 +136,8 @@ class BopFormat : public ExportFormat {
       poses.push_back(pose_json(placed, camera, object));
       infos.push_back(info_json(whole, visible[k], depths));
     }
-    files.scene["rgb/000000.png"] = png_of_rgb(image.shaded_rgb(), image.width(), image.height());
-    files.scene["depth/000000.png"] = png_of(depth_image(depths, scale));
+    files.scene["rgb/000000.png"] = encode_rgb_png(image.shaded_rgb(), image.width(), image.height());
+    files.scene["depth/000000.png"] = encode_grey_png(depths.values, depths.width, depths.height);
     files.scene[kSceneCamera] = text_of(camera_json(image, scale));
     files.scene[kSensor] = text_of(sensor_json(image, scale));
     files.scene[kGroundTruth] = text_of({{"0", poses}});

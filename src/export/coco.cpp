@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json_reader.hpp"
+#include "core/png.hpp"
 #include "export/formats.hpp"
 #include "export/object_numbers.hpp"
 #include "tubebin/core/atomic_file.hpp"
@@ -87,7 +88,7 @@ class CocoFormat : public ExportFormat {
       if (!visible[k].pixels.empty())  // COCO has no instances that nothing shows
         annotations.push_back(annotation_json(scene.entry, k, visible[k], image.mask_of(views[k])));
     SceneFiles files;
-    files.scene[kImage] = png_of_rgb(image.shaded_rgb(), image.width(), image.height());
+    files.scene[kImage] = encode_rgb_png(image.shaded_rgb(), image.width(), image.height());
     files.scene[kAnnotations] =
         document(categories_json(scene), Json::array({image_json(scene.entry, image)}), annotations);
     return files;

@@ -99,12 +99,8 @@ void add_normals(const SceneToExport& scene, Files& arrays) {
 
 void add_scanner(const scene::SceneRecord& record, Files& arrays) {
   const scene::Camera camera(record.scene.scanner);
-  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
-  k(0, 0) = k(1, 1) = camera.focal_length();
-  k(0, 2) = camera.width() / 2.0;
-  k(1, 2) = camera.height() / 2.0;
   std::vector<double> intrinsics, pose;
-  append_rows(intrinsics, k);
+  append_rows(intrinsics, camera.intrinsics());
   append_rows(pose, camera.world_from_scanner().matrix());
   const scene::PixelWindow& window = record.window;
   arrays["intrinsics.npy"] = npy(intrinsics, {3, 3});

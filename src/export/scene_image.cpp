@@ -5,6 +5,7 @@
 
 #include "export/surface_normal.hpp"
 #include "tubebin/core/error.hpp"
+#include "tubebin/scene/depth_image.hpp"
 
 namespace tubebin::exports {
 namespace {
@@ -78,21 +79,12 @@ bool SceneImage::has(int column, int row) const {
          row < region_.y + region_.height;
 }
 
-Eigen::Matrix3d SceneImage::intrinsics() const {
-  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
-  k(0, 0) = k(1, 1) = camera_.focal_length();
-  k(0, 2) = camera_.width() / 2.0 - region_.x;
-  k(1, 2) = camera_.height() / 2.0 - region_.y;
-  return k;
-}
-
-Raster<float> SceneImage::depths() const {
-  Raster<float> depths(points_.width, points_.height, 0.0F);
-  const Pose scanner_from_world = camera_.world_from_scanner().inverse();
+Raster<std::uint16_t> SceneImage::depths() const {
+  Raster<std::uint16_t> depths(points_.width, points_.height, 0);
+  const scene::DepthScale scale(scene_.record.scene.scanner);
   for (std::size_t i = 0; i < points_.values.size(); ++i)
     if (const int point = points_.values[i]; point >= 0)
-      depths.values[i] = static_cast<float>(
-          (scanner_from_world * scene_.cloud.points[static_cast<std::size_t>(point)].cast<double>()).z());
+      depths.values[i] = scale.depth(scene_.cloud.points[static_cast<std::size_t>(point)]);
   return depths;
 }
 

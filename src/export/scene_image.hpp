@@ -48,9 +48,9 @@ class SceneImage {
   int width() const { return region_.width; }
   int height() const { return region_.height; }
   /// Of this image; its pixels have their centres at halves.
-  Eigen::Matrix3d intrinsics() const;
-  /// Metres along the optical axis; 0 where nothing was seen.
-  Raster<float> depths() const;
+  Eigen::Matrix3d intrinsics() const { return camera_.intrinsics(region_); }
+  /// Along the optical axis, in units of the scanner's scene::DepthScale; 0 where nothing was seen.
+  Raster<std::uint16_t> depths() const;
   /// Where each tube is seen; of tube k at [k - 1].
   std::vector<Mask> visible_masks() const;
   /// Three bytes a pixel: grey tubes in a darker bin, lit from the scanner, black where nothing was seen.
@@ -76,9 +76,5 @@ struct PixelBox {
   int height = -1;
 };
 PixelBox box_of(const Mask& mask);
-
-/// PNG files' bytes: 16 bit grey, 8 bit red green blue.
-std::string png_of(const Raster<std::uint16_t>& image);
-std::string png_of_rgb(const std::vector<std::uint8_t>& rgb, int width, int height);
 
 }  // namespace tubebin::exports

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "core/png.hpp"
+
 #ifdef TUBEBIN_HAVE_OSMESA
 #include "render/opengl/functions.hpp"
 #include "render/opengl/views.hpp"
@@ -18,6 +20,8 @@ namespace {
 }
 
 }  // namespace
+
+std::string encode_png(const Image& image) { return encode_rgb_png(image.rgb, image.width, image.height); }
 
 #ifdef TUBEBIN_HAVE_OSMESA
 

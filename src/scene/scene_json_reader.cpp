@@ -222,6 +222,7 @@ SceneRecord parse_scene_json(std::string_view text, const std::string& name) {
   record.id = root.at("id").text();
   record.seed = root.at("seed").whole(0, std::numeric_limits<std::uint64_t>::max());
   if (root.has("cloud")) root.at("cloud").fields([&](Fields& fields) { describe(fields, record.space); });
+  if (root.has("depth_image")) record.depth_mm_per_unit = root.at("depth_image").at("mm_per_unit").number({1e-6, 1e6});
   if (root.has("drawn")) record.drawn = root.at("drawn").numbers();
   record.scene.bin = read_bin(root.at("bin"));
   record.colors.push_back(read_color(root.at("bin").at("color")));

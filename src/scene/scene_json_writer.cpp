@@ -144,6 +144,7 @@ std::string format_scene_json(const SceneRecord& record) {
     CloudSpace space = record.space;
     json["cloud"] = fields_to_json([&](Fields& fields) { describe(fields, space); });
   }
+  if (record.depth_mm_per_unit) json["depth_image"] = {{"mm_per_unit", to_json(*record.depth_mm_per_unit)}};
   if (!record.drawn.empty()) json["drawn"] = record.drawn;
   json.update({{"bin", bin_to_json(record.scene.bin, record.colors[0])},
                {"scanner", scanner_to_json(record.scene.scanner, record.window)},

@@ -47,6 +47,14 @@ TEST(DatasetConfig, SuggestsTheKeyThatWasMeant) {
   EXPECT_THAT(refusal_of("case: 3\n"), HasSubstr("did you mean 'cases'?"));
 }
 
+TEST(DatasetConfig, RefusesDepthImagesOfCloudsThatAreNone) {
+  EXPECT_EQ(refusal_of("output: {depth_image: true}\nscanner: {region: full}\n"), "(accepted)");
+  EXPECT_THAT(refusal_of("output: {depth_image: true}\nscanner: {region: tubes}\n"),
+              AllOf(StartsWith("c.yaml:1:23: output.depth_image: 'true'"), HasSubstr("scanner.region 'tubes'")));
+  EXPECT_THAT(refusal_of("scanners: [{}, {position: [0, 1, 2]}]\noutput: {depth_image: true}\n"),
+              AllOf(StartsWith("c.yaml:2:23: output.depth_image: 'true'"), HasSubstr("`scanners`")));
+}
+
 TEST(DatasetConfig, NamesPlaceKeyValueAndWhatIsValid) {
   EXPECT_THAT(refusal_of("tube:\n  radius: thick\n"),
               AllOf(StartsWith("c.yaml:2:11: tube.radius: 'thick'"), HasSubstr("0.0005")));

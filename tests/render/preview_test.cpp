@@ -145,7 +145,7 @@ TEST(PreviewWithoutOSMesa, IsRefusedWithTheRemedy) {
 
 TEST(Png, ReadsBackTheSame) {
   Image image{3, 2, {255, 0, 0, 0, 255, 0, 0, 0, 255, 1, 2, 3, 4, 5, 6, 7, 8, 9}};
-  const std::vector<std::uint8_t> bytes = encode_png(image);
+  const std::string bytes = encode_png(image);
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
   ASSERT_TRUE(png_image_begin_read_from_memory(&header, bytes.data(), bytes.size()));

@@ -18,6 +18,7 @@ struct OutputOptions {
   cloud::CloudFormat format = cloud::CloudFormat::pcd_binary;
   scene::CloudSpace space;
   bool clean_cloud = false;  ///< the noise-free twin beside each cloud
+  bool depth_image = false;  ///< depth.png and labels.png beside each cloud (scene/depth_image.hpp)
   bool preview = false;      ///< a rendered picture and the ground-truth image beside each cloud
 };
 

@@ -20,7 +20,7 @@ struct SceneContent {
   scene::SceneRecord record;
   cloud::Cloud cloud;
   std::optional<cloud::Cloud> clean_cloud;    ///< without the scanner's effects
-  std::map<std::string, std::string> images;  ///< PNG files by name, with previews
+  std::map<std::string, std::string> images;  ///< PNG files by name
 };
 
 class SceneStore {

@@ -36,6 +36,6 @@ Image render_preview(const scene::Scene& scene, int width, int height);
 Image render_labels(const scene::Scene& scene, const scene::PixelWindow& window);
 
 /// The image as a PNG file's bytes; equal images give equal bytes.
-std::vector<std::uint8_t> encode_png(const Image& image);
+std::string encode_png(const Image& image);
 
 }  // namespace tubebin::render

@@ -14,6 +14,8 @@ class Camera {
   int height() const { return height_; }
   /// Pixels; half the width divided by the tangent of half the horizontal field of view.
   double focal_length() const { return focal_length_; }
+  /// Of the window's pixels, or of all: [f 0 cx; 0 f cy; 0 0 1], pixels.
+  Eigen::Matrix3d intrinsics(const PixelWindow& window = {}) const;
   const Pose& world_from_scanner() const { return world_from_scanner_; }
 
   /// The direction, in world axes, through image position (x, y) in pixels. Its component along the optical

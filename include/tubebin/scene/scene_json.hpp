@@ -26,6 +26,7 @@ struct SceneRecord {
   std::vector<PixelWindow> further_windows = {};  ///< of the scene's further scanners
   std::optional<PileRelations> relations;         ///< nothing in files of versions that did not write them
   CloudSpace space = {};                          ///< of the cloud's file
+  std::optional<double> depth_mm_per_unit = {};   ///< of depth.png; nothing where none is beside the cloud
   DrawnNumbers drawn = {};                        ///< of the configuration, for the scene; tubes have their own
   std::optional<Lift> lift = {};                  ///< where the pile is what was left after a tube was lifted out
 };
