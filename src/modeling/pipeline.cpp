@@ -47,6 +47,14 @@ std::vector<TubePiece> find_cylinder_pieces(const FilteredCloud& cloud, const st
   return pieces;
 }
 
+/// Edges and corners of other things look like a short stretch of tube, too, but of a worse surface.
+bool is_doubtful(const TubeModel& tube) {
+  constexpr double kShort = 8.0, kEvidence = 100.0;  // radii; nats
+  double evidence = 0.0;
+  for (const TubePath& path : tube.paths) evidence += path.evidence;
+  return tube.length() < kShort * tube.radius && evidence < kEvidence;
+}
+
 std::vector<TubeModel> tubes_of_class(const TubeClass& found, const OcclusionTest& scan, double tube_length,
                                       ModelingResult& result) {
   const OcclusionTest occlusion = scan.with_radius(found.radius);
@@ -136,11 +144,13 @@ Background find_surroundings(ModelingInput& input, const ViewProjection& project
 
 /// Radii and pieces; of `--method region_growing`, which finds pieces of its own, a told radius alone.
 std::vector<TubeClass> find_classes(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& scan,
-                                    const Background& background, const ModelingOptions& options) {
+                                    const Background& background, const SceneFound& found,
+                                    const ModelingOptions& options) {
   const std::vector<double> radii = told_radii(options);
   if (options.method == ModelingMethod::region_growing && !radii.empty())
     return {{.radius = radii.front(), .radius_error = 0.0, .pieces = {}}};
-  return find_tube_classes(cloud, projection, scan, background.noise, background.is_known, radii);
+  return find_tube_classes(cloud, projection, scan, background.noise, background.is_known,
+                           found.up_is_known ? found.up : Vec3::Zero(), radii);
 }
 
 /// What lies outside the box that tubes are looked for in counts as background.
@@ -252,7 +262,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   scan.add_solids(solids_of(background));
   watch.lap(result.seconds.filtering);
 
-  const std::vector<TubeClass> classes = find_classes(cloud, projection, scan, background, options);
+  const std::vector<TubeClass> classes = find_classes(cloud, projection, scan, background, result.found, options);
   for (const TubeClass& found : classes) {
     result.radii.push_back(found.radius);
     result.radius_errors.push_back(found.radius_error);
@@ -263,6 +273,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   if (options.method == ModelingMethod::centerline) {
     for (const TubeClass& found : classes)
       std::ranges::move(tubes_of_class(found, scan, options.tube_length, result), std::back_inserter(result.tubes));
+    if (!background.is_known) std::erase_if(result.tubes, is_doubtful);
     watch.lap(result.seconds.joining);
   } else if (result.radius > 0.0) {
     result.tubes = grow_tubes(cloud, projection, result.radius, options, result.seconds, watch);

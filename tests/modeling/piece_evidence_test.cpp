@@ -45,5 +45,30 @@ TEST(PieceEvidence, TakesNoCoilForATube) {
   EXPECT_FALSE(is_tube(evidence, kRadius, 0.0));
 }
 
+TubePiece piece_through(const std::vector<Vec3>& nodes) { return {.nodes = nodes, .radius = kRadius, .points = {}}; }
+
+TEST(PieceEvidence, StandsWhereItIsStraightAndUpright) {
+  const Vec3 up = Vec3(0.2, -0.1, 1.0).normalized(), level = up.unitOrthogonal();
+  const auto leaning = [&](double degrees) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    return piece_through({Vec3::Zero(), 0.2 * (std::cos(angle) * up + std::sin(angle) * level)});
+  };
+  EXPECT_TRUE(stands_upright(leaning(0.0), up));
+  EXPECT_TRUE(stands_upright(leaning(180.0), up));
+  EXPECT_TRUE(stands_upright(leaning(2.0), up));
+  EXPECT_FALSE(stands_upright(leaning(10.0), up));
+  EXPECT_FALSE(stands_upright(leaning(90.0), up));
+  EXPECT_FALSE(stands_upright(leaning(0.0), Vec3::Zero()));
+  EXPECT_FALSE(stands_upright(piece_through({-0.1 * up, Vec3(0.05 * level), 0.1 * up}), up));  // a bend
+  EXPECT_FALSE(stands_upright(piece_through({Vec3::Zero(), Vec3(kRadius * up)}), up));         // too short to tell
+}
+
+TEST(PieceEvidence, IsInsideWhereMostOfItsCentrelineIs) {
+  const TubePiece bottle{.nodes = {{0, 0, 0}, {0, 0, 0.3}}, .radius = 0.06, .points = {}};
+  EXPECT_TRUE(is_inside(piece_through({{0.05, 0, 0.02}, {0.045, 0.01, 0.1}, {0.05, 0, 0.25}}), bottle));
+  EXPECT_FALSE(is_inside(piece_through({{0.075, 0, 0.02}, {0.08, 0, 0.25}}), bottle));              // leans on it
+  EXPECT_FALSE(is_inside(piece_through({{0.05, 0, 0.1}, {0.2, 0, 0.1}, {0.3, 0, 0.1}}), bottle));  // ends at it
+}
+
 }  // namespace
 }  // namespace tubebin::modeling

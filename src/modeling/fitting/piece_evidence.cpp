@@ -156,4 +156,19 @@ bool is_tube(const PieceEvidence& evidence, double radius, double noise) {
   return evidence.curvature_error < 0.25 && std::abs(evidence.curvature - 1.0) < 0.15 + 2.0 * evidence.curvature_error;
 }
 
+bool stands_upright(const TubePiece& piece, const Vec3& up) {
+  if (up.isZero()) return false;
+  constexpr double kStraight = 0.95, kLean = 0.05, kAxisError = 0.4;  // chord per length; a slope; radii
+  const Vec3 chord = piece.nodes.back() - piece.nodes.front();
+  const double level = (chord - chord.dot(up) * up).norm();
+  return chord.norm() > kStraight * piece.length() && chord.norm() > 2.0 * piece.radius &&
+         level < kLean * chord.norm() + kAxisError * piece.radius;
+}
+
+bool is_inside(const TubePiece& piece, const TubePiece& solid) {
+  const auto inside = std::ranges::count_if(
+      piece.nodes, [&](const Vec3& node) { return distance_to_polyline(node, solid.nodes) < solid.radius; });
+  return 2 * inside > std::ssize(piece.nodes);
+}
+
 }  // namespace tubebin::modeling

@@ -28,4 +28,11 @@ bool has_other_radius(const PieceEvidence& evidence);
 /// as the points can tell, with points on its surface and no sides that the scanner saw through.
 bool is_tube(const PieceEvidence& evidence, double radius, double noise);
 
+/// Whether the piece is straight and upright: tubes lie or lean, and bottles, columns and the edges of boxes stand. `up`:
+/// unit, or zero where it is not known, and nothing stands.
+bool stands_upright(const TubePiece& piece, const Vec3& up);
+
+/// Whether most of the piece's centreline runs inside another cylinder, as that of a streak along a bottle does.
+bool is_inside(const TubePiece& piece, const TubePiece& solid);
+
 }  // namespace tubebin::modeling

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include "modeling/fitting/centerline_fitting.hpp"
 #include "modeling/fitting/centerline_pieces.hpp"
@@ -23,6 +24,9 @@ constexpr std::size_t kMostPieces = 1500;
 /// In radii, the longest piece of a radius that is one of tubes: necks and caps of bottles and jars end before.
 constexpr double kLeastLength = 8.0;
 
+/// Of the radius. Edges and rims seem round here and there, and of no one radius.
+constexpr double kFurtherRadiusError = 0.01;
+
 void keep_surest(std::vector<TubePiece>& pieces) {
   if (pieces.size() <= kMostPieces) return;
   std::ranges::stable_sort(pieces, std::greater<>(), &TubePiece::evidence);
@@ -32,18 +36,19 @@ void keep_surest(std::vector<TubePiece>& pieces) {
 class ClassFinder {
  public:
   ClassFinder(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion, double noise,
-              bool background_is_known)
+              bool background_is_known, const Vec3& up)
       : cloud_(cloud),
         projection_(projection),
         occlusion_(occlusion),
         noise_(noise),
-        background_is_known_(background_is_known) {}
+        background_is_known_(background_is_known),
+        up_(up) {}
 
   std::vector<TubeClass> find_told(const std::vector<double>& radii) {
     std::vector<TubeClass> classes;
     for (const double radius : radii) {
-      classes.push_back(pieces_of(rest_.points.empty() ? cloud_ : rest_, radius));
-      if (radii.size() > 1) set_aside(classes.back());
+      classes.push_back(pieces_of(left(), radius));
+      if (radii.size() > 1) set_aside(classes.back().pieces);
     }
     return classes;
   }
@@ -53,20 +58,24 @@ class ClassFinder {
     std::vector<double> tried;
     const std::size_t enough = cloud_.points.size() / 100;
     for (std::size_t k = 0; k < kMostTries && classes.size() < kMostClasses; ++k) {
-      FilteredCloud& left = classes.empty() ? cloud_ : rest_;
-      if (!classes.empty() && left.points.size() < enough) break;
-      const double seen = likeliest_radius(left, tried, enough);
+      if (rest_ && rest_->points.size() < enough) break;
+      const double seen = likeliest_radius(left(), tried, enough);
       if (seen <= 0.0) break;
-      TubeClass found = refined_class(left, seen);
-      tried.push_back(found.pieces.empty() ? seen : found.radius);
-      if (found.pieces.empty()) continue;
-      set_aside(found);
+      TubeClass found = refined_class(left(), seen);
+      tried.push_back(found.radius > 0.0 ? found.radius : seen);
+      set_aside(standing_);
+      if (!is_believed(found, classes.empty())) continue;
+      set_aside(found.pieces);
       classes.push_back(std::move(found));
     }
+    for (TubeClass& found : classes) drop_streaks(found);
+    std::erase_if(classes, [](const TubeClass& found) { return found.pieces.empty(); });
     return classes;
   }
 
  private:
+  FilteredCloud& left() { return rest_ ? *rest_ : cloud_; }
+
   double reach(const FilteredCloud& cloud, double radius) const { return normal_radius(cloud.spacing, radius); }
 
   /// The radius that most places of the surface show, of those that are not `tried` yet; 0 where fewer than `enough`
@@ -91,10 +100,13 @@ class ClassFinder {
       radius = refined;
       if (is_settled) break;
     }
-    TubeClass found = pieces_of(cloud, radius);
+    return pieces_of(cloud, radius);
+  }
+
+  static bool is_believed(const TubeClass& found, bool is_first) {
     const auto longest = std::ranges::max_element(found.pieces, {}, &TubePiece::length);
-    if (longest == found.pieces.end() || longest->length() < kLeastLength * radius) return {};
-    return found;
+    if (longest == found.pieces.end() || longest->length() < kLeastLength * found.radius) return false;
+    return is_first || found.radius_error < kFurtherRadiusError * found.radius;
   }
 
   /// As the longest pieces that are tubes show it; 0 where none is.
@@ -128,8 +140,12 @@ class ClassFinder {
     for (TubePiece& piece : find_centerline_pieces(sample, segment_by_votes(sample, radius), projection_, radius)) {
       const PieceEvidence evidence = examine_piece(piece, sample.points, occlusion);
       // Before a known background all but what other tubes leave over is tube.
-      const bool all_is_tube = background_is_known_ && rest_.points.empty();
+      const bool all_is_tube = background_is_known_ && !rest_;
       if (all_is_tube ? has_other_radius(evidence) : !is_tube(evidence, radius, noise_)) continue;
+      if (!all_is_tube && stands_upright(piece, up_)) {
+        standing_.push_back(std::move(piece));
+        continue;
+      }
       // Of two normal errors, the plane's is that many standard deviations.
       const double deviations = evidence.curvature / evidence.curvature_error;
       piece.evidence = 0.5 * deviations * deviations;
@@ -141,13 +157,20 @@ class ClassFinder {
     return found;
   }
 
-  /// What the class does not explain is left for the others.
-  void set_aside(const TubeClass& found) {
-    const FilteredCloud& left = rest_.points.empty() ? cloud_ : rest_;
+  /// A streak of a bottle's side may look like a tube of a smaller radius.
+  void drop_streaks(TubeClass& found) const {
+    std::erase_if(found.pieces, [&](const TubePiece& piece) {
+      return std::ranges::any_of(standing_, [&](const TubePiece& solid) { return is_inside(piece, solid); });
+    });
+  }
+
+  /// What the pieces do not explain is left for others.
+  void set_aside(const std::vector<TubePiece>& pieces) {
+    if (pieces.empty()) return;
     FilteredCloud rest{.source = {}, .points = {}, .normals = {}, .spacing = cloud_.spacing};
-    for (const std::uint32_t i : unexplained_points(left.points, found.pieces, cloud_.spacing)) {
-      rest.source.push_back(left.source[i]);
-      rest.points.push_back(left.points[i]);
+    for (const std::uint32_t i : unexplained_points(left().points, pieces, cloud_.spacing)) {
+      rest.source.push_back(left().source[i]);
+      rest.points.push_back(left().points[i]);
     }
     rest_ = std::move(rest);
   }
@@ -157,15 +180,17 @@ class ClassFinder {
   const OcclusionTest& occlusion_;
   double noise_;
   bool background_is_known_;
-  FilteredCloud rest_;
+  Vec3 up_;
+  std::optional<FilteredCloud> rest_;
+  std::vector<TubePiece> standing_;
 };
 
 }  // namespace
 
 std::vector<TubeClass> find_tube_classes(FilteredCloud& cloud, const ViewProjection& projection,
                                          const OcclusionTest& occlusion, double noise, bool background_is_known,
-                                         const std::vector<double>& told) {
-  ClassFinder finder(cloud, projection, occlusion, noise, background_is_known);
+                                         const Vec3& up, const std::vector<double>& told) {
+  ClassFinder finder(cloud, projection, occlusion, noise, background_is_known, up);
   return told.empty() ? finder.find_all() : finder.find_told(told);
 }
 
