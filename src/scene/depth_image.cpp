@@ -58,11 +58,11 @@ DepthImage read_depth_image(const DatasetFiles& files, const ConfinedPath& scene
     const std::string cloud = files.cloud_of(scene);
     return depth_image(parse_scene_cloud(files.read(scene, cloud), files.place(scene, cloud), record), record);
   }
-  const auto [x, y, width, height] = record.window;
+  const PixelWindow& window = record.window;
   const auto read = [&](const char* file) {
-    return decode_grey_png(files.read(scene, file), files.place(scene, file), width, height);
+    return decode_grey_png(files.read(scene, file), files.place(scene, file), window.width, window.height);
   };
-  return {width, height, *record.depth_mm_per_unit, read(kDepthFile), read(kLabelsFile)};
+  return {window.width, window.height, *record.depth_mm_per_unit, read(kDepthFile), read(kLabelsFile)};
 }
 
 }  // namespace tubebin::scene
