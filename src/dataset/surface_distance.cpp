@@ -70,4 +70,10 @@ double BodySurface::distance(const Vec3& point) const {
   return nearest;
 }
 
+std::vector<BodySurface> surfaces_of(const scene::Scene& scene) {
+  std::vector<BodySurface> surfaces = {BodySurface(scene)};
+  for (const scene::PlacedTube& tube : scene.tubes) surfaces.emplace_back(tube);
+  return surfaces;
+}
+
 }  // namespace tubebin::dataset

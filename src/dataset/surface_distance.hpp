@@ -40,4 +40,7 @@ class BodySurface {
   std::vector<PosedBox> boxes_;
 };
 
+/// By label.
+std::vector<BodySurface> surfaces_of(const scene::Scene& scene);
+
 }  // namespace tubebin::dataset
