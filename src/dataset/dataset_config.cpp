@@ -138,8 +138,7 @@ void describe(Fields& fields, DatasetConfig& config) {
                   "A10/007/step_00, step_01, ...; 0 makes one scene of each pile, A10/007");
     inner.choice(
         "rule", config.sequence.rule, {"top", "random"},
-        "which tube is next: of those with none above them (of all, where there are none) the one whose centre "
-        "of mass is highest, or any");
+        "which tube is next: of those with the fewest above them the one whose centre of mass is highest, or any");
     inner.number("speed", config.sequence.lift.speed, {0.001, 10.0}, "m/s", "at which it is pulled straight up");
   });
   describe_scanners(fields, config);
@@ -182,9 +181,9 @@ void check_numbers(const DatasetConfig& config, const KeyPlaces& places) {
   check(config.bin, places, "bin");
   check(config.surroundings, config.bin, places, "surroundings");
   check(config.physics, places, "physics");
-  if (config.scanners.empty()) check(config.scanner, config.bin, places, "scanner");
+  if (config.scanners.empty()) check(config.scanner, config.bin, config.surroundings, places, "scanner");
   for (std::size_t i = 0; i < config.scanners.size(); ++i)
-    check(config.scanners[i], config.bin, places, fmt::format("scanners[{}]", i));
+    check(config.scanners[i], config.bin, config.surroundings, places, fmt::format("scanners[{}]", i));
 }
 
 DatasetConfig load_config(const std::string& path) {

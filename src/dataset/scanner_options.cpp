@@ -29,14 +29,22 @@ void describe(Fields& fields, ScannerOptions& scanner) {
                [&](Fields& effects) { describe(effects, scanner.effects); });
 }
 
-void check(const ScannerOptions& scanner, const scene::Bin& bin, const KeyPlaces& places, const std::string& prefix) {
+void check(const ScannerOptions& scanner, const scene::Bin& bin, const scene::SurroundingsOptions& surroundings,
+           const KeyPlaces& places, const std::string& prefix) {
   scene::check(scanner, places, prefix);
   check_look_at(scanner, places, prefix);
+  const auto fail = [&](const char* place) {
+    places.fail(prefix + ".position",
+                fmt::format("[{}, {}, {}] m is inside {}; valid: a place in the open", scanner.position.x(),
+                            scanner.position.y(), scanner.position.z(), place));
+  };
   for (const scene::BinPart& part : scene::bin_parts(bin))
-    if (part.box.contains(part.world_from_part.inverse() * scanner.position))
-      places.fail(prefix + ".position",
-                  fmt::format("[{}, {}, {}] m is inside the bin's floor or a wall of it; valid: a place in the open",
-                              scanner.position.x(), scanner.position.y(), scanner.position.z()));
+    if (part.box.contains(part.world_from_part.inverse() * scanner.position)) fail("the bin's floor or a wall of it");
+  const scene::StandingBox table = scene::table_of(surroundings, bin);
+  const Vec3 in_table = scanner.position - table.position;
+  const scene::Box slab(Vec3(-table.size.x() / 2.0, -table.size.y() / 2.0, 0.0),
+                        Vec3(table.size.x() / 2.0, table.size.y() / 2.0, table.size.z()));
+  if (surroundings.table_length > 0.0 && slab.contains(in_table)) fail("the table of the surroundings");
 }
 
 }  // namespace tubebin::dataset

@@ -123,13 +123,12 @@ StandingCylinder random_cylinder(const SurroundingsOptions& options, const Vec3&
   return cylinder;
 }
 
-/// The bin stands on it, with its middle above the table's.
+}  // namespace
+
 StandingBox table_of(const SurroundingsOptions& options, const Bin& bin) {
   return {.position = {0.0, 0.0, -bin.wall_thickness - options.table_thickness},
           .size = {options.table_length, options.table_width, options.table_thickness}};
 }
-
-}  // namespace
 
 PlacedSurroundings place_surroundings(const SurroundingsOptions& options, const Bin& bin,
                                       const std::vector<PlacedTube>& tubes, const std::vector<Scanner>& scanners,

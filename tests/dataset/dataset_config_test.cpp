@@ -90,6 +90,14 @@ TEST(DatasetConfig, RefusesValuesThatContradictEachOther) {
               AllOf(HasSubstr("surroundings.table.width: 0.2 m"), HasSubstr("at least 0.41 m")));
   EXPECT_THAT(refusal_of("surroundings: {table: {length: 1, width: 1}, boxes: {size_min: 0.3}}\n"),
               HasSubstr("surroundings.boxes.size_max: 0.2 is below surroundings.boxes.size_min = 0.3"));
+  EXPECT_THAT(refusal_of("surroundings: {table: {length: 2, width: 2, thickness: 0.1}}\n"
+                         "scanner: {position: [0.9, 0.9, -0.05]}\n"),
+              AllOf(StartsWith("c.yaml:2:21: scanner.position"),
+                    HasSubstr("[0.9, 0.9, -0.05] m is inside the table of the surroundings")));
+  EXPECT_THAT(refusal_of("surroundings: {table: {length: {uniform: [1.0, 2.0]}, width: 2}}\n"
+                         "scanner: {position: [0.9, 0.9, -0.03]}\n"),
+              HasSubstr("inside the table of the surroundings"))
+      << "some of the tables that may be drawn reach it";
   EXPECT_THAT(refusal_of("surroundings: {table: {length: 1, width: 1}, cylinders: {count_min: 3}}\n"),
               HasSubstr("surroundings.cylinders.count_max: 0 is below"));
   EXPECT_THAT(refusal_of("tubes: [1, 5, 1]\n"), StartsWith("c.yaml:1:8: tubes: 1 stands in the list twice"));

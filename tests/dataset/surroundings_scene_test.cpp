@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <set>
 
 #include "support/commands.hpp"
 #include "support/faults.hpp"
@@ -98,6 +99,42 @@ TEST_F(Surroundings, VerifyFindsAnObjectThatIsNotTheSeeds) {
   record.files["scene.json"] = record_bytes(text);
   manifest.append(record);
   EXPECT_THAT(verify(), HasSubstr("other surroundings than config.yaml and the seed give"));
+}
+
+TEST_F(Surroundings, NumbersAreDrawnForEachPileRecordedAndVerified) {
+  const ProgramResult made =
+      make(kPlain +
+               "surroundings: {table: {length: {uniform: [1.5, 2.5]}, width: 1.5}, boxes: {count_min: 2, count_max: 2, "
+               "size_max: {choice: [0.06, 0.1]}}, cylinders: {count_max: {choice: [1, 2]}}, "
+               "clearance: {uniform: [0.1, 0.2]}}\n",
+           data_);
+  ASSERT_EQ(made.exit_code, 0) << made.error;
+  EXPECT_THAT(verify(), HasSubstr("2 scenes checked, 0 damaged"));
+  std::set<double> lengths;
+  for (const char* id : {"S3/001", "S3/002"}) {
+    const scene::SceneRecord record = scene(id);
+    const scene::Surroundings& around = record.scene.surroundings.value();
+    EXPECT_EQ(around.table.size.x(), record.drawn.at("surroundings.table.length"));
+    EXPECT_LE(around.cylinders.size(), record.drawn.at("surroundings.cylinders.count_max"));
+    lengths.insert(around.table.size.x());
+    for (const scene::StandingBox& box : around.boxes)
+      EXPECT_LE(box.size.maxCoeff(), record.drawn.at("surroundings.boxes.size_max"));
+    const double clearance = record.drawn.at("surroundings.clearance");
+    for (const scene::StandingCylinder& cylinder : around.cylinders)
+      for (const scene::StandingBox& box : around.boxes)
+        EXPECT_GT((cylinder.position - box.position).norm() - cylinder.radius, clearance) << "to a point of the box";
+  }
+  EXPECT_EQ(lengths.size(), 2u);
+
+  scene::SceneRecord other = scene("S3/001");
+  other.drawn.at("surroundings.table.length") += 0.1;
+  Manifest manifest{OutputFolder(data_)};
+  ManifestRecord record = *manifest.find("S3/001");
+  const std::string text = scene::format_scene_json(other);
+  write_text(data_ + "/S3/001/scene.json", text);
+  record.files["scene.json"] = record_bytes(text);
+  manifest.append(record);
+  EXPECT_THAT(verify(), HasSubstr("1 damaged"));
 }
 
 TEST_F(Surroundings, ATableWithoutRoomIsNamed) {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "tubebin/scene/scene.hpp"
+#include "tubebin/scene/place_surroundings.hpp"
 
 namespace tubebin::dataset {
 
@@ -17,7 +17,9 @@ struct ScannerOptions : scene::Scanner {
 
 /// With its effects.
 void describe(Fields& fields, ScannerOptions& scanner);
-/// Throws ConfigError, also where the scanner stands in a wall of the bin; `prefix` is the scanner's key path.
-void check(const ScannerOptions& scanner, const scene::Bin& bin, const KeyPlaces& places, const std::string& prefix);
+/// Throws ConfigError, also where the scanner stands in a wall of the bin or in the table; `prefix` is the scanner's key
+/// path.
+void check(const ScannerOptions& scanner, const scene::Bin& bin, const scene::SurroundingsOptions& surroundings,
+           const KeyPlaces& places, const std::string& prefix);
 
 }  // namespace tubebin::dataset

@@ -30,6 +30,9 @@ struct SurroundingsOptions {
 void describe(Fields& fields, SurroundingsOptions& options);
 void check(const SurroundingsOptions& options, const Bin& bin, const KeyPlaces& places, const std::string& prefix);
 
+/// The bin stands on it, with its middle above the table's.
+StandingBox table_of(const SurroundingsOptions& options, const Bin& bin);
+
 struct PlacedSurroundings {
   std::optional<Surroundings> surroundings;  ///< none without a table
   std::string problem;                       ///< which object found no free place; empty where all did
