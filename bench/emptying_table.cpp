@@ -1,6 +1,8 @@
 // Scenes by emptying piles, beside scenes by a drop each: emptying_table CONFIG.yaml FOLDER PILES LIFTS TUBES...
 // FOLDER is new and lies on the disk that is written to. Each pile is dropped with the seed of one and the same case, and
 // taken apart by LIFTS lifts; processor time of one process, rejected attempts included.
+#include <malloc.h>
+
 #include <ctime>
 
 #include "dataset/pile.hpp"
@@ -16,6 +18,7 @@ struct Costs {
   double seconds = 0.0;
   int scenes = 0;
   int rejected = 0;
+  int given_up = 0;                  ///< lifts that another took the place of
   double largest_drift = 0.0;        ///< metres
   double deepest_penetration = 0.0;  ///< metres
   double lift_steps = 0.0;
@@ -35,25 +38,34 @@ void make_scenes(const dataset::DatasetConfig& config, const dataset::SceneStore
     if (lifts > 0) shown.step = static_cast<int>(step);
     store.begin_write(fmt::format("{}/{}", lifts, shown.name()), dataset::show_pile(made, shown).content)();
     ++costs.scenes;
-    costs.largest_drift = std::max(costs.largest_drift, pile.physics.largest_drift);
-    costs.deepest_penetration = std::max(costs.deepest_penetration, pile.physics.deepest_penetration);
-    if (step > 0) costs.lift_steps += pile.physics.steps;
+    costs.largest_drift = std::max(costs.largest_drift, pile.rest.figures.largest_drift);
+    costs.deepest_penetration = std::max(costs.deepest_penetration, pile.rest.figures.deepest_penetration);
+    if (!pile.lift) continue;
+    costs.lift_steps += pile.rest.figures.steps;
+    costs.given_up += static_cast<int>(pile.lift->given_up.size());
   }
   costs.seconds += now() - start;
 }
 
 double milliseconds_a_scene(const Costs& costs) { return costs.seconds / costs.scenes * 1e3; }
 
+/// As worker processes do (src/jobs/worker_process.cpp).
+void keep_memory() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
+  keep_memory();
   if (argc < 6) throw_config_error("usage: emptying_table CONFIG.yaml FOLDER PILES LIFTS TUBES...");
   const dataset::DatasetConfig config = dataset::load_config(argv[1]);
   const dataset::SceneStore store(OutputFolder(argv[2]), config.output);
   const int piles = std::stoi(argv[3]), lifts = std::stoi(argv[4]);
 
   fmt::print(
-      "| tubes | scene by a drop, ms | by emptying, ms | times as many | rejected drops, piles | steps a lift | "
+      "| tubes | scene by a drop, ms | by emptying, ms | times as many | rejected drops, piles, lifts | steps a lift | "
       "largest drift, mm | deepest penetration, mm |\n| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (int i = 5; i < argc; ++i) {
     Costs dropped, emptied;
@@ -62,10 +74,10 @@ int main(int argc, char** argv) try {
       make_scenes(config, store, id, 0, dropped);
       make_scenes(config, store, id, lifts, emptied);
     }
-    fmt::print("| {} | {:.1f} | {:.1f} | {:.1f} | {}, {} | {:.0f} | {:.2f} | {:.2f} |\n", argv[i],
+    fmt::print("| {} | {:.1f} | {:.1f} | {:.1f} | {}, {}, {} | {:.0f} | {:.2f} | {:.2f} |\n", argv[i],
                milliseconds_a_scene(dropped), milliseconds_a_scene(emptied),
                milliseconds_a_scene(dropped) / milliseconds_a_scene(emptied), dropped.rejected, emptied.rejected,
-               emptied.lift_steps / (emptied.scenes - piles), emptied.largest_drift * 1e3,
+               emptied.given_up, emptied.lift_steps / (emptied.scenes - piles), emptied.largest_drift * 1e3,
                emptied.deepest_penetration * 1e3);
     std::fflush(stdout);
   }

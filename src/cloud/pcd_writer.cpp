@@ -5,6 +5,7 @@
 #include <cstring>
 #include <iterator>
 #include <limits>
+#include <span>
 
 #include "cloud/cloud_formats.hpp"
 #include "tubebin/core/error.hpp"
@@ -51,12 +52,17 @@ void append_binary(std::string& out, const Cloud& cloud) {
     std::memcpy(at, &value, sizeof(value));
     at += sizeof(value);
   };
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    std::memcpy(at, cloud.points[i].data(), sizeof(Point));
+  // Whose addresses `at`, which may write anywhere, can't change: the loop need not look them up for each point.
+  const std::span points(cloud.points);
+  const std::span colors(cloud.colors);
+  const std::span labels(cloud.labels);
+  const std::span sources(cloud.sources);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::memcpy(at, points[i].data(), sizeof(Point));
     at += sizeof(Point);
-    if (!cloud.colors.empty()) put(cloud.colors[i]);
-    if (!cloud.labels.empty()) put(cloud.labels[i]);
-    if (!cloud.sources.empty()) put(cloud.sources[i]);
+    if (!colors.empty()) put(colors[i]);
+    if (!labels.empty()) put(labels[i]);
+    if (!sources.empty()) put(sources[i]);
   }
 }
 

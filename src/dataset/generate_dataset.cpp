@@ -46,7 +46,7 @@ std::function<std::string()> begin_scene(const DatasetFolder& folder, const Scen
                         .physics = scene.physics,
                         .files = {}};
   const auto start = std::chrono::steady_clock::now();
-  const auto complete = folder.store().begin_write(record.id, scene.content);
+  const auto complete = folder.store().begin_write(record.id, std::move(scene.content));
   record.seconds["write"] = seconds_since(start);
   return [complete, record]() mutable {
     const auto wait_start = std::chrono::steady_clock::now();

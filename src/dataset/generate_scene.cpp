@@ -41,12 +41,12 @@ GeneratedScene show_pile(const Piles& piles, const SceneId& id) {
   const Pile& pile = piles.piles[static_cast<std::size_t>(std::max(id.step, 0))];
   GeneratedScene result;
   result.seconds = pile.seconds;
-  result.physics = pile.physics;
+  result.physics = pile.rest.figures;
   StageClock clock(result.seconds);
   const std::vector<scene::Scanner> scanners = config.all_scanners();
   const scene::Scene scene{.bin = config.bin,
                            .scanner = scanners.front(),
-                           .tubes = pile.tubes,
+                           .tubes = pile.rest.tubes,
                            .further_scanners = {scanners.begin() + 1, scanners.end()},
                            .surroundings = pile.surroundings};
   scan::MergedScan scanned = scan::scan_from_all(scene, pile.seed);
@@ -68,7 +68,7 @@ GeneratedScene show_pile(const Piles& piles, const SceneId& id) {
                            .window = scanned.window,
                            .colors = cloud::label_colors(scene.tubes.size()),
                            .tube_pixels = std::move(scanned.tube_pixels),
-                           .contacts = pile.contacts,
+                           .contacts = pile.rest.contacts,
                            .further_windows = std::move(scanned.further_windows),
                            .relations = std::move(relations),
                            .space = config.output.space,

@@ -8,30 +8,39 @@
 namespace tubebin::dataset {
 namespace {
 
-/// Index of the tube that the rule lifts next.
-std::size_t choose_tube(const std::vector<scene::PlacedTube>& tubes, LiftRule rule, Random& random) {
-  const std::vector<scene::Above> above = scene::find_above(tubes);
-  std::vector<std::size_t> free, all;
-  for (std::size_t i = 0; i < tubes.size(); ++i) {
-    all.push_back(i);
-    if (std::ranges::none_of(above, [&](const scene::Above& pair) { return pair.lower == i + 1; })) free.push_back(i);
+/// Most tubes of one pile that are lifted, one instead of the other, until the rest comes to rest.
+constexpr int kTriesOfALift = 3;
+
+/// Indices of the tubes with the fewest above: in a deep pile of bent tubes, hardly one has none.
+std::vector<std::size_t> liftable_tubes(const std::vector<scene::PlacedTube>& tubes) {
+  std::vector<int> counts(tubes.size(), 0);
+  for (const scene::Above& pair : scene::find_above(tubes)) ++counts[pair.lower - 1];
+  const int fewest = std::ranges::min(counts);
+  std::vector<std::size_t> liftable;
+  for (std::size_t i = 0; i < tubes.size(); ++i)
+    if (counts[i] == fewest) liftable.push_back(i);
+  return liftable;
+}
+
+/// Takes out of `liftable` the tube that the rule lifts next.
+std::size_t take_next(std::vector<std::size_t>& liftable, const std::vector<scene::PlacedTube>& tubes, LiftRule rule,
+                      Random& random) {
+  auto next = liftable.begin();
+  if (rule == LiftRule::random) {
+    next += random.integer(0, static_cast<int>(liftable.size()) - 1);
+  } else {
+    std::vector<double> heights;
+    for (const std::size_t i : liftable)
+      heights.push_back((tubes[i].world_from_tube * tube::mass_properties(tubes[i].tube).center).z());
+    next += std::ranges::max_element(heights) - heights.begin();
   }
-  const std::vector<std::size_t>& choice = free.empty() ? all : free;
-  if (rule == LiftRule::random)
-    return choice[static_cast<std::size_t>(random.integer(0, static_cast<int>(choice.size()) - 1))];
-  return std::ranges::max(choice, {}, [&](std::size_t i) {
-    return (tubes[i].world_from_tube * tube::mass_properties(tubes[i].tube).center).z();
-  });
+  const std::size_t tube = *next;
+  liftable.erase(next);
+  return tube;
 }
 
 Pile to_pile(physics::DropResult result, std::uint64_t seed) {
-  return {.seed = seed,
-          .tubes = std::move(result.tubes),
-          .surroundings = {},
-          .contacts = std::move(result.contacts),
-          .physics = result.figures,
-          .lift = std::nullopt,
-          .seconds = {}};
+  return {.seed = seed, .rest = std::move(result), .surroundings = {}, .lift = std::nullopt, .seconds = {}};
 }
 
 Piles failed_piles(const physics::DropResult& result, const std::string& where) {
@@ -47,10 +56,49 @@ Piles crowded_piles(const physics::DropFigures& figures, const std::string& deta
 }
 
 scene::Lift to_lift(const Pile& before, std::size_t lifted, const physics::LiftResult& result) {
-  scene::Lift lift{.lifted = static_cast<std::uint32_t>(lifted + 1), .force = result.force, .dragged = {}, .moved = {}};
+  scene::Lift lift{.lifted = static_cast<std::uint32_t>(lifted + 1),
+                   .force = result.force,
+                   .given_up = {},
+                   .dragged = {},
+                   .moved = {}};
   for (const std::size_t i : result.dragged) lift.dragged.push_back(static_cast<std::uint32_t>(i + 1));
-  lift.moved = scene::find_moved(scene::without(before.tubes, lift.lifted), result.rest.tubes);
+  lift.moved = scene::find_moved(scene::without(before.rest.tubes, lift.lifted), result.rest.tubes);
   return lift;
+}
+
+/// Of one lift: the pile that it leaves, alone.
+Piles lift_one(const DatasetConfig& config, const Pile& before, std::size_t tube, std::uint64_t physics_seed) {
+  physics::LiftResult lift =
+      physics::lift_tube(before.rest, tube, config.bin, config.physics, config.sequence.lift, physics_seed);
+  if (lift.rest.failure != physics::DropFailure::none) return failed_piles(lift.rest, "");
+  if (before.surroundings) {
+    const std::string touching = scene::find_touching_tube(*before.surroundings, config.bin, lift.rest.tubes);
+    if (!touching.empty()) return crowded_piles(lift.rest.figures, touching);
+  }
+  const scene::Lift record = to_lift(before, tube, lift);
+  Pile after = to_pile(std::move(lift.rest), 0);
+  after.surroundings = before.surroundings;
+  after.lift = record;
+  return {.failure = {}, .failure_detail = {}, .physics = {}, .piles = {std::move(after)}};
+}
+
+/// Lifts the tube that the rule chooses, or, where the others don't come to rest without it, the next: one that tips a
+/// pile over need not cost the lifts before it.
+Piles lift_next(const DatasetConfig& config, const Pile& before, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<std::size_t> liftable = liftable_tubes(before.rest.tubes);
+  std::vector<std::uint32_t> given_up;
+  while (true) {
+    const std::size_t tube = take_next(liftable, before.rest.tubes, config.sequence.rule, random);
+    Piles left = lift_one(config, before, tube, random.bits());
+    if (left.failure.empty()) {
+      left.piles.front().seed = seed;
+      left.piles.front().lift->given_up = given_up;
+      return left;
+    }
+    given_up.push_back(static_cast<std::uint32_t>(tube + 1));
+    if (given_up.size() == kTriesOfALift || liftable.empty()) return left;
+  }
 }
 
 }  // namespace
@@ -85,29 +133,19 @@ Piles make_piles(const DatasetConfig& undrawn, const SceneId& id, int attempt, i
   result.physics = drop.figures;
   result.piles.push_back(to_pile(std::move(drop), seed));
   result.piles.back().seconds = seconds;
-  const scene::PlacedSurroundings around = draw_surroundings(config, seed, result.piles.back().tubes);
+  const scene::PlacedSurroundings around = draw_surroundings(config, seed, result.piles.back().rest.tubes);
   if (!around.problem.empty()) return crowded_piles(result.physics, around.problem);
   result.piles.back().surroundings = around.surroundings;
 
   for (int step = 1; step <= lifts; ++step) {
-    const Pile& before = result.piles.back();
-    const std::uint64_t step_seed = derive_seed({seed, static_cast<std::uint64_t>(step)});
-    Random step_random(step_seed);
-    const std::size_t lifted = choose_tube(before.tubes, config.sequence.rule, step_random);
-    physics::LiftResult lift =
-        physics::lift_tube(before.tubes, lifted, config.bin, config.physics, config.sequence.lift, step_random.bits());
-    if (lift.rest.failure != physics::DropFailure::none)
-      return failed_piles(lift.rest, fmt::format("after lift {}: ", step));
-    const scene::Lift record = to_lift(before, lifted, lift);
-    if (around.surroundings) {
-      const std::string touching = scene::find_touching_tube(*around.surroundings, config.bin, lift.rest.tubes);
-      if (!touching.empty()) return crowded_piles(lift.rest.figures, fmt::format("after lift {}: {}", step, touching));
+    Piles left = lift_next(config, result.piles.back(), derive_seed({seed, static_cast<std::uint64_t>(step)}));
+    if (!left.failure.empty()) {
+      left.failure_detail = fmt::format("after lift {}: {}", step, left.failure_detail);
+      return left;
     }
     seconds.clear();
     clock.end_stage("lift");
-    result.piles.push_back(to_pile(std::move(lift.rest), step_seed));
-    result.piles.back().surroundings = around.surroundings;
-    result.piles.back().lift = record;
+    result.piles.push_back(std::move(left.piles.front()));
     result.piles.back().seconds = seconds;
   }
   return result;

@@ -7,10 +7,8 @@ namespace tubebin::dataset {
 
 struct Pile {
   std::uint64_t seed = 0;  ///< of the scene that shows it
-  std::vector<scene::PlacedTube> tubes;
+  physics::DropResult rest;
   std::optional<scene::Surroundings> surroundings;
-  std::vector<scene::Contact> contacts;
-  physics::DropFigures physics;
   std::optional<scene::Lift> lift;  ///< that left it
   std::map<std::string, double> seconds;
 };

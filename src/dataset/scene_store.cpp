@@ -41,12 +41,13 @@ std::string SceneStore::cloud_name() const { return std::string("cloud") + exten
 std::string SceneStore::clean_cloud_name() const { return std::string("cloud_clean") + extension(options_.format); }
 
 std::function<std::map<ConfinedPath, FileRecord>()> SceneStore::begin_write(const ConfinedPath& scene_name,
-                                                                            const SceneContent& content) const {
+                                                                            SceneContent content) const {
   std::map<std::string, cloud::Cloud> clouds;
-  clouds[cloud_name()] = scene::in_space(content.cloud, content.record.space);
-  if (content.clean_cloud) clouds[clean_cloud_name()] = scene::in_space(*content.clean_cloud, content.record.space);
+  clouds[cloud_name()] = scene::in_space(std::move(content.cloud), content.record.space);
+  if (content.clean_cloud)
+    clouds[clean_cloud_name()] = scene::in_space(std::move(*content.clean_cloud), content.record.space);
 
-  std::map<std::string, std::string> files = content.images;
+  std::map<std::string, std::string> files = std::move(content.images);
   for (const auto& [name, cloud] : clouds) files[name] = cloud::format_cloud(cloud, options_.format);
   files["scene.json"] = scene::format_scene_json(content.record);
   files["tubes.txt"] = scene::format_tubes_txt(content.record.scene.tubes);

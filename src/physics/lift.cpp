@@ -20,9 +20,13 @@ constexpr double kAboveTheRim = 0.005;  ///< metres
 /// The pile while one of its tubes is pulled up.
 class Pull {
  public:
-  Pull(const std::vector<scene::PlacedTube>& pile, std::size_t tube, const scene::Bin& bin,
-       const PhysicsOptions& options, const LiftOptions& lift)
-      : tube_(tube), rim_(bin.height), options_(options), lift_(lift), world_(pile, bin, options) {
+  Pull(const DropResult& pile, std::size_t tube, const scene::Bin& bin, const PhysicsOptions& options,
+       const LiftOptions& lift)
+      : tube_(tube),
+        rim_(bin.height),
+        options_(options),
+        lift_(lift),
+        world_(pile.tubes, bin, options, pile.forces ? *pile.forces : PileForces{}) {
     for (std::size_t i = 0; i < world_.size(); ++i) start_heights_.push_back(world_.center_of_mass(i).z());
     highest_ = start_heights_;
   }
@@ -42,7 +46,8 @@ class Pull {
 
   /// Once it is out.
   LiftResult let_the_rest_settle(const scene::Bin& bin, std::uint64_t seed) && {
-    LiftResult result{.rest = {}, .force = std::max(most_force_, mean_force()), .dragged = {}};
+    const double weight = options_.gravity * world_.tubes()[tube_].tube.mass;  // which it goes on to hold
+    LiftResult result{.rest = {}, .force = std::max({most_force_, mean_force(), weight}), .dragged = {}};
     for (std::size_t i = 0; i < world_.size(); ++i)
       if (i != tube_ && highest_[i] - start_heights_[i] > world_.tubes()[i].tube.radius_max())
         result.dragged.push_back(i < tube_ ? i : i - 1);
@@ -59,19 +64,13 @@ class Pull {
   bool is_out() const {
     if (steps_ == 0) return false;
     if (CollisionTube(world_.tubes()[tube_]).bounds.min().z() > rim_ + kAboveTheRim) return true;
-    return !world_.touches_another(tube_) && is_free_above();
+    return !world_.touches_another(tube_) && !scene::has_above(world_.tubes(), static_cast<std::uint32_t>(tube_ + 1));
   }
 
-  bool is_free_above() const {
-    const auto lower = static_cast<std::uint32_t>(tube_ + 1);
-    return std::ranges::none_of(scene::find_above(world_.tubes()),
-                                [&](const scene::Above& pair) { return pair.lower == lower; });
-  }
-
-  /// The long one while all is slow, once the contacts have found their forces.
+  /// The long one while all is slow.
   double next_time_step() const {
-    const bool long_is_enough = time_ >= kSpeedUpTime && lift_.speed <= kLongStepSpeed &&
-                                others_are_below(kLongStepSpeed, std::numeric_limits<double>::infinity());
+    const bool long_is_enough =
+        lift_.speed <= kLongStepSpeed && others_are_below(kLongStepSpeed, std::numeric_limits<double>::infinity());
     return long_is_enough ? options_.rest_time_step : options_.time_step;
   }
 
@@ -117,8 +116,8 @@ class Pull {
 
 }  // namespace
 
-LiftResult lift_tube(const std::vector<scene::PlacedTube>& pile, std::size_t tube, const scene::Bin& bin,
-                     const PhysicsOptions& options, const LiftOptions& lift, std::uint64_t seed) {
+LiftResult lift_tube(const DropResult& pile, std::size_t tube, const scene::Bin& bin, const PhysicsOptions& options,
+                     const LiftOptions& lift, std::uint64_t seed) {
   Pull pull(pile, tube, bin, options, lift);
   pull.pull_out();
   return std::move(pull).let_the_rest_settle(bin, seed);

@@ -174,13 +174,14 @@ struct RigidWorld::Impl {
 };
 
 RigidWorld::RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin,
-                       const PhysicsOptions& options)
+                       const PhysicsOptions& options, PileForces forces)
     : impl_(std::make_unique<Impl>()) {
   init_ode();
   impl_->options = options;
   impl_->bin = bin;
   impl_->boxes = collision_boxes(bin);
   impl_->tubes = tubes;
+  impl_->contacts = std::move(forces.contacts);
   impl_->threading = dThreadingAllocateSelfThreadedImplementation();
   impl_->world = dWorldCreate();
   dWorldSetStepThreadingImplementation(impl_->world, dThreadingImplementationGetFunctions(impl_->threading),
@@ -256,6 +257,7 @@ void RigidWorld::put(std::size_t tube, const Pose& world_from_tube) {
   impl_->shapes[tube].follow(impl_->tubes[tube]);
 }
 
+PileForces RigidWorld::forces() const { return {impl_->contacts}; }
 const std::vector<scene::PlacedTube>& RigidWorld::tubes() const { return impl_->tubes; }
 Pose RigidWorld::pose(std::size_t tube) const { return impl_->tubes[tube].world_from_tube; }
 Vec3 RigidWorld::center_of_mass(std::size_t tube) const { return to_vec(dBodyGetPosition(impl_->bodies[tube])); }

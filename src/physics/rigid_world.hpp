@@ -4,14 +4,20 @@
 #include <memory>
 #include <vector>
 
-#include "physics/collision.hpp"
+#include "physics/contact_solver.hpp"
 #include "tubebin/physics/drop_simulator.hpp"
 
 namespace tubebin::physics {
 
+struct PileForces {
+  std::vector<StepContact> contacts;  ///< of the last step, in its order
+};
+
 class RigidWorld {
  public:
-  RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin, const PhysicsOptions& options);
+  /// Tubes that stand still, under no forces or under those of an earlier world with the same tubes in the same places.
+  RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin, const PhysicsOptions& options,
+             PileForces forces = {});
   ~RigidWorld();
   RigidWorld(RigidWorld&&) noexcept;
   RigidWorld(const RigidWorld&) = delete;
@@ -34,6 +40,8 @@ class RigidWorld {
   /// Moves a tube to where it is to fall from.
   void put(std::size_t tube, const Pose& world_from_tube);
 
+  /// Of the last step.
+  PileForces forces() const;
   const std::vector<scene::PlacedTube>& tubes() const;
   /// World pose of one tube's frame.
   Pose pose(std::size_t tube) const;

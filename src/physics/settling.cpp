@@ -103,6 +103,7 @@ DropResult judge(const RigidWorld& world, const scene::Bin& bin, const PhysicsOp
   result.contacts = find_contacts(result.tubes, bin, -kTouchingGap);
   figures.deepest_penetration = deepest_penetration(result.contacts);
   result.figures = figures;
+  result.forces = std::make_shared<const PileForces>(world.forces());
   if (figures.deepest_penetration > options.penetration_max)
     return failed(DropFailure::penetration, fmt::format("{:.2f} mm deep", figures.deepest_penetration * 1e3), figures);
   if (const auto tube = find_floating(result.contacts, result.tubes.size()))

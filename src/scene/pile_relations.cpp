@@ -129,6 +129,13 @@ std::vector<Above> find_above(const std::vector<PlacedTube>& tubes) {
   return above;
 }
 
+bool has_above(const std::vector<PlacedTube>& tubes, std::uint32_t label) {
+  const Core lower = core_of(tubes[label - 1]);
+  for (std::uint32_t other = 1; other <= tubes.size(); ++other)
+    if (other != label && order_of(core_of(tubes[other - 1]), lower).first_above) return true;
+  return false;
+}
+
 std::vector<LabelGroup> entangled_groups(std::size_t tube_count, const std::vector<Above>& above) {
   const auto reaches = transitive_closure(tube_count, above);
   std::vector<bool> is_grouped(tube_count, false);

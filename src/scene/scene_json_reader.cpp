@@ -209,6 +209,9 @@ Lift read_lift(const JsonPlace& place, std::size_t tube_count) {
     lift.dragged.push_back(read_tube_label(label, tube_count));
   for (const JsonPlace& tube : place.at("moved").elements())
     lift.moved.push_back({read_tube_label(tube.at("label"), tube_count), tube.at("distance").number({0.0})});
+  if (!place.has("given_up")) return lift;
+  for (const JsonPlace& label : place.at("given_up").elements())
+    lift.given_up.push_back(read_tube_label(label, tube_count + 1));
   return lift;
 }
 

@@ -113,8 +113,10 @@ OrderedJson lift_to_json(const Lift& lift) {
   OrderedJson moved = OrderedJson::array();
   for (const MovedTube& tube : lift.moved)
     moved.push_back({{"label", tube.label}, {"distance", to_json(tube.distance)}});
-  return {
+  OrderedJson json = {
       {"lifted", lift.lifted}, {"force", to_json(lift.force)}, {"dragged", lift.dragged}, {"moved", std::move(moved)}};
+  if (!lift.given_up.empty()) json["given_up"] = lift.given_up;
+  return json;
 }
 
 void check_consistent(const SceneRecord& record) {

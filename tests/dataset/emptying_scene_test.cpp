@@ -1,4 +1,7 @@
 // Bins that are emptied tube by tube.
+#include <algorithm>
+
+#include "dataset/pile.hpp"
 #include "dataset/shards.hpp"
 #include "tubebin/scene/scene_json.hpp"
 
@@ -69,6 +72,41 @@ TEST_F(Emptying, AStepThatDoesNotFollowFromTheOneBeforeIsDamaged) {
   manifest.append(record);
   EXPECT_THAT(run_generate_dataset({"--verify", emptied_}).out,
               HasSubstr("the tubes did not move from where E4/001/step_01 has them"));
+}
+
+int count_above(const std::vector<scene::PlacedTube>& tubes, std::size_t index) {
+  return static_cast<int>(std::ranges::count(scene::find_above(tubes), index + 1, &scene::Above::lower));
+}
+
+TEST(EmptyingRule, LiftsOneOfTheTubesWithTheFewestAbove) {
+  const DatasetConfig config = load_config(TUBEBIN_SOURCE_DIR "/config/set_a.yaml");
+  const Piles made = make_piles(config, {"A", 12, 2}, 0, 6);
+  ASSERT_EQ(made.failure, "") << made.failure_detail;
+  for (std::size_t step = 1; step < made.piles.size(); ++step) {
+    const std::vector<scene::PlacedTube>& before = made.piles[step - 1].rest.tubes;
+    const scene::Lift& lift = made.piles[step].lift.value();
+    if (!lift.given_up.empty()) continue;
+    for (std::size_t i = 0; i < before.size(); ++i)
+      EXPECT_LE(count_above(before, lift.lifted - 1), count_above(before, i)) << "step " << step;
+  }
+}
+
+TEST(EmptyingRule, ALiftThatLeavesNoRestGivesWayToAnother) {
+  const DatasetConfig config = load_config(TUBEBIN_SOURCE_DIR "/config/set_a.yaml");
+  const Piles made = make_piles(config, {"A", 10, 1}, 0, 9);
+  ASSERT_EQ(made.failure, "") << made.failure_detail;
+  int given_up = 0;
+  for (std::size_t step = 1; step < made.piles.size(); ++step) {
+    Random random(made.piles[step].seed);
+    for (const std::uint32_t label : made.piles[step].lift->given_up) {
+      ++given_up;
+      EXPECT_NE(label, made.piles[step].lift->lifted);
+      const physics::LiftResult lift = physics::lift_tube(made.piles[step - 1].rest, label - 1, config.bin,
+                                                          config.physics, config.sequence.lift, random.bits());
+      EXPECT_NE(lift.rest.failure, physics::DropFailure::none) << "tube " << label << " of step " << step - 1;
+    }
+  }
+  EXPECT_GT(given_up, 0) << "choose another pile for this test";
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "physics/rest_check.hpp"
 #include "physics/rest_proof.hpp"
+#include "physics/rigid_world.hpp"
 #include "tubebin/scene/lift.hpp"
 #include "tubebin/tube/tube_generator.hpp"
 
@@ -20,8 +21,14 @@ scene::PlacedTube tube_between(const Vec3& a, const Vec3& b) {
           make_pose(Quat::Identity(), a)};
 }
 
-LiftResult lift(const std::vector<scene::PlacedTube>& pile, std::size_t tube) {
+LiftResult lift(const DropResult& pile, std::size_t tube) {
   return lift_tube(pile, tube, scene::Bin{}, PhysicsOptions{}, LiftOptions{}, 1);
+}
+
+LiftResult lift(const std::vector<scene::PlacedTube>& tubes, std::size_t tube) {
+  DropResult pile;
+  pile.tubes = tubes;
+  return lift(pile, tube);
 }
 
 TEST(Lift, AFreeTubeWeighsWhatItWeighsAndLeavesTheOthersAlone) {
@@ -67,6 +74,25 @@ TEST(Lift, TheOthersKeepTheirOrderAndWhatTheyBear) {
   for (const scene::Contact& contact : result.rest.contacts) EXPECT_LE(contact.label_b, 3u);
 }
 
+double fastest(const RigidWorld& world) {
+  double speed = 0.0;
+  for (std::size_t i = 0; i < world.size(); ++i) speed = std::max(speed, world.speed(i));
+  return speed;
+}
+
+TEST(Lift, AWorldGoesOnUnderTheForcesThatHeldThePile) {
+  Random random(31);
+  const scene::Bin bin;
+  const DropResult pile = drop_tubes(tube::generate_tubes(12, {}, random), bin, PhysicsOptions{}, 4);
+  ASSERT_EQ(pile.failure, DropFailure::none) << pile.detail;
+  PhysicsOptions options;
+  options.solver_iterations = 1;  // too few to find forces
+  RigidWorld held(pile.tubes, bin, options, *pile.forces), loose(pile.tubes, bin, options);
+  for (RigidWorld* world : {&held, &loose}) world->step(options.rest_time_step);
+  EXPECT_LT(fastest(held), 0.001);
+  EXPECT_GT(fastest(loose), 10.0 * fastest(held));
+}
+
 TEST(Lift, APileIsEmptiedOneByOneAndEachRestIsAPile) {
   Random random(31);
   const PhysicsOptions options;
@@ -74,15 +100,15 @@ TEST(Lift, APileIsEmptiedOneByOneAndEachRestIsAPile) {
   DropResult pile = drop_tubes(tube::generate_tubes(8, {}, random), bin, options, 9);
   ASSERT_EQ(pile.failure, DropFailure::none) << pile.detail;
   while (pile.tubes.size() > 1) {
-    const std::vector<scene::PlacedTube> before = pile.tubes;
+    const DropResult before = pile;
     const LiftResult result = lift(before, 0);
     ASSERT_EQ(result.rest.failure, DropFailure::none) << result.rest.detail;
     pile = result.rest;
-    ASSERT_EQ(pile.tubes.size(), before.size() - 1);
-    EXPECT_EQ(pile.tubes.front().tube.nodes, before[1].tube.nodes);
+    ASSERT_EQ(pile.tubes.size(), before.tubes.size() - 1);
+    EXPECT_EQ(pile.tubes.front().tube.nodes, before.tubes[1].tube.nodes);
     EXPECT_LE(deepest_penetration(find_contacts(pile.tubes, bin, 0.0)), options.penetration_max);
     EXPECT_FALSE(find_floating(pile.contacts, pile.tubes.size()));
-    EXPECT_GT(result.force, 0.99 * before[0].tube.mass * options.gravity);
+    EXPECT_GT(result.force, 0.99 * before.tubes[0].tube.mass * options.gravity);
     const LiftResult again = lift(before, 0);
     for (std::size_t k = 0; k < pile.tubes.size(); ++k)
       EXPECT_EQ(again.rest.tubes[k].world_from_tube.matrix(), pile.tubes[k].world_from_tube.matrix());

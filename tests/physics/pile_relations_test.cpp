@@ -121,6 +121,10 @@ TEST(PileRelations, AgreesWithLiftingADroppedPile) {
   } while (drop.failure != DropFailure::none && seed < 10);
   ASSERT_EQ(drop.failure, DropFailure::none) << drop.detail;
   EXPECT_GT(expect_agreement_with_lifting(drop.tubes), 3);
+  const auto above = scene::find_above(drop.tubes);
+  for (std::uint32_t label = 1; label <= drop.tubes.size(); ++label)
+    EXPECT_EQ(scene::has_above(drop.tubes, label),
+              std::ranges::any_of(above, [&](const scene::Above& pair) { return pair.lower == label; }));
 }
 
 TEST(PileRelations, AgreesWithLiftingPublishedPiles) {

@@ -124,7 +124,7 @@ TEST(SceneJson, WhatStandsAroundReadsBack) {
 
 TEST(SceneJson, EverythingReadsBackBitByBit) {
   SceneRecord record = make_record(10);
-  record.lift = {.lifted = 11, .force = 0.1 + 0.2, .dragged = {3, 10}, .moved = {{2, 1.0 / 3.0}}};
+  record.lift = {.lifted = 11, .force = 0.1 + 0.2, .given_up = {10, 4}, .dragged = {3, 10}, .moved = {{2, 1.0 / 3.0}}};
   record.scene.tubes[3].tube.kind = "pipe";
   const SceneRecord back = parse(format_scene_json(record));
   EXPECT_EQ(back.id, record.id);
@@ -225,7 +225,7 @@ TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   record.scene.scanner.effects.projector.enabled = true;  // else the scanner's effects are not there
   record.scene.bin.draft_deg = 3.0;                       // else it is a box
   record.scene.surroundings = make_surroundings();
-  record.lift = {.lifted = 3, .force = 0.6, .dragged = {1}, .moved = {{2, 0.004}}};
+  record.lift = {.lifted = 3, .force = 0.6, .given_up = {2}, .dragged = {1}, .moved = {{2, 0.004}}};
   const json scene = json::parse(format_scene_json(record));
   const auto keys = [](const json& object) {
     std::set<std::string> names;

@@ -24,7 +24,7 @@ struct OutputOptions {
 
 /// Which tube is lifted out next.
 enum class LiftRule {
-  top,    ///< of the tubes with none above them, the one whose centre of mass is highest
+  top,    ///< of the tubes with the fewest above them, the one whose centre of mass is highest
   random  ///< any of these
 };
 

@@ -40,7 +40,7 @@ class SceneStore {
   /// returned its files, after waiting for the disk. Both throw IoError; nothing unfinished is ever under the scene's
   /// name.
   std::function<std::map<ConfinedPath, FileRecord>()> begin_write(const ConfinedPath& scene_name,
-                                                                  const SceneContent& content) const;
+                                                                  SceneContent content) const;
 
   /// True where the scene's folder has the files of the record, each with its size (hashes are for verify), or its pack
   /// is long enough to.

@@ -1,6 +1,7 @@
 /// Drops tubes into the bin until they are at rest (paper, Section 3), by ODE.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -75,12 +76,16 @@ struct DropFigures {
   double largest_drift = 0.0;        ///< metres, over the check at the end
 };
 
+/// What the contacts of a pile bear, in the simulator's own form.
+struct PileForces;
+
 struct DropResult {
   DropFailure failure = DropFailure::none;
   std::string detail;  ///< "tube 3 left the bin", empty without a failure
   std::vector<scene::PlacedTube> tubes;
   std::vector<scene::Contact> contacts;  ///< of the finished scene
   DropFigures figures;
+  std::shared_ptr<const PileForces> forces;  ///< that hold the finished scene; a lift goes on from them
 };
 
 /// Spawns the tubes above the bin, lets them fall together until all are at rest, and checks the result.

@@ -20,7 +20,8 @@ struct LiftResult {
 
 /// Pulls a tube of a pile at rest slowly straight up, as a gripper that holds it without turning, until nothing is in its
 /// way or all of it is above the rim. Then it is gone; the others come to rest from where they are, as after a drop.
-LiftResult lift_tube(const std::vector<scene::PlacedTube>& pile, std::size_t tube, const scene::Bin& bin,
-                     const PhysicsOptions& options, const LiftOptions& lift, std::uint64_t seed);
+/// Of `pile` it takes the tubes and the forces; where there are none, they are found while it pulls.
+LiftResult lift_tube(const DropResult& pile, std::size_t tube, const scene::Bin& bin, const PhysicsOptions& options,
+                     const LiftOptions& lift, std::uint64_t seed);
 
 }  // namespace tubebin::physics

@@ -16,8 +16,11 @@ struct MovedTube {
 
 /// A tube was lifted out. Labels of the others are those that they have now.
 struct Lift {
-  std::uint32_t lifted = 0;            ///< its label in the pile before
-  double force = 0.0;                  ///< N; the most that pulled for a tenth of a second, the weight included
+  std::uint32_t lifted = 0;  ///< its label in the pile before
+  double force = 0.0;        ///< N; the most that pulled for a tenth of a second, the weight included
+  std::vector<std::uint32_t>
+      given_up;  ///< labels in the pile before of those lifted first, without which the others did
+                 ///< not come to rest; in their order
   std::vector<std::uint32_t> dragged;  ///< tubes that rose meanwhile by more than their radius, ascending
   std::vector<MovedTube> moved;        ///< tubes that lie elsewhere by more than kMovedLeast, ascending
 

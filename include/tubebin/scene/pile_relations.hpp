@@ -47,6 +47,9 @@ constexpr double kGrazing = 0.0005;
 /// straight up while the others stand still. Bores count as solid. The bin, open above, is in nobody's way.
 std::vector<Above> find_above(const std::vector<PlacedTube>& tubes);
 
+/// Whether find_above would find a tube above that of the label.
+bool has_above(const std::vector<PlacedTube>& tubes, std::uint32_t label);
+
 /// The knots of a pile: largest groups of two tubes or more of which each is, through a chain of the others, both above
 /// and below each other one (the strongly connected components of the graph of `above`). None of a group can be lifted
 /// straight up before another of the group was moved otherwise. Sorted by their first labels.
