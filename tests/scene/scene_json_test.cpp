@@ -220,6 +220,7 @@ TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   }
   record.drawn = {{"bin.height", 0.2}};
   record.space.unit = CloudSpace::Unit::mm;
+  record.depth_mm_per_unit = 0.1;
   record.scene.further_scanners = {record.scene.scanner};
   record.further_windows = {record.window};
   record.scene.scanner.effects.projector.enabled = true;  // else the scanner's effects are not there
