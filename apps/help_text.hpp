@@ -106,12 +106,20 @@ class HelpInWords : public CLI::Formatter {
   }
 };
 
+/// Words that nobody knows come before needed options, which CLI11 misses first: one of these may be misspelled.
+inline std::string problem_of(const CLI::App& app, const CLI::Error& error) {
+  const std::vector<std::string> unknown = app.remaining();
+  const auto code = static_cast<CLI::ExitCodes>(error.get_exit_code());
+  const bool may_be_misspelled = code == CLI::ExitCodes::RequiredError || code == CLI::ExitCodes::ExtrasError;
+  return may_be_misspelled && !unknown.empty() ? "not expected: " + CLI::detail::join(unknown, " ") : error.what();
+}
+
 /// Two lines under what is wrong.
 inline std::string describe_failure(const CLI::App* app, const CLI::Error& error) {
   const std::string help = app->help();
   const std::size_t usage = help.find("Usage:");
   // Every option that CLI11 converts is a number.
-  return fmt::format("{}: {}{}\n{}\nSee {} --help.\n", app->get_name(), error.what(),
+  return fmt::format("{}: {}{}\n{}\nSee {} --help.\n", app->get_name(), problem_of(*app, error),
                      error.get_name() == "ConversionError" ? "; a number is needed there" : "",
                      help.substr(usage, help.find('\n', usage) - usage), app->get_name());
 }

@@ -71,11 +71,16 @@ TEST(CommandLine, AWrongCallIsToldShortly) {
       if (*argument != 0) call.emplace_back(argument);
       const ProgramResult result = Program(call).wait();
       EXPECT_EQ(result.exit_code, 2);
+      EXPECT_THAT(result.error, HasSubstr(argument));
       EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 3) << result.error;
       EXPECT_THAT(result.error, AllOf(::testing::StartsWith(program + ": "), HasSubstr("\nUsage: " + program + " "),
                                       HasSubstr("\nSee " + program + " --help.\n")));
     }
   EXPECT_THAT(Program({program_path("export_dataset")}).wait().error, HasSubstr("DATASET --format "));
+  EXPECT_THAT(Program({program_path("view"), "a", "b", "c"}).wait().error,
+              ::testing::StartsWith("view: not expected: b c\n"));
+  EXPECT_THAT(Program({program_path("calibrate_modeler"), "data", "--outptu", "x"}).wait().error,
+              ::testing::StartsWith("calibrate_modeler: not expected: --outptu x\n"));
 }
 
 }  // namespace
