@@ -16,9 +16,11 @@ import numpy as np
 
 import job
 import outcome
+import tubes
 
 HERE = Path(__file__).resolve().parent
-CONFIG = HERE.parents[1] / "config" / "set_a.yaml"
+CONFIGS = HERE.parents[1] / "config"
+PEERS = {"PyBullet": "pybullet_peer.py", "MuJoCo": "mujoco_peer.py"}
 MILLIMETRES = 1e3
 
 
@@ -38,13 +40,15 @@ class Program:
         return self.command[0] == sys.executable
 
 
-def programs(build: Path) -> list[Program]:
-    peers = [("PyBullet", "pybullet_peer.py"), ("MuJoCo", "mujoco_peer.py")]
-    rows = [Program("generate_dataset", [str(build / "bin" / "generate_dataset"), str(CONFIG), "--quiet"])]
-    for name, script in peers:
-        rows.append(Program(f"{name}, same gates", [sys.executable, str(HERE / script), "--same-gates"]))
-    for name, script in peers:
-        rows.append(Program(f"{name}, velocities alone", [sys.executable, str(HERE / script)]))
+def programs(arguments: argparse.Namespace) -> list[Program]:
+    config = CONFIGS / ("full_bin.yaml" if arguments.full_bin else "set_a.yaml")
+    own = [str(arguments.build / "bin" / "generate_dataset"), str(config), "--quiet"]
+    more = ["--full-bin"] if arguments.full_bin else []
+    rows = [Program("generate_dataset", own)]
+    for gates, flags in (("same gates", ["--same-gates"]), ("velocities alone", [])):
+        for name in arguments.peers:
+            command = [sys.executable, str(HERE / PEERS[name]), "--attempts", str(arguments.attempts)]
+            rows.append(Program(f"{name}, {gates}", command + flags + more))
     return rows
 
 
@@ -167,8 +171,8 @@ def row(program: Program, own: Program, arguments: argparse.Namespace) -> str:
         np.mean([scene["seconds"].get(stage, 0.0) for scene in program.scenes]) * 1e3
         for stage in ("generate", "build", "settle", "render", "write")
     ]
-    at_rest = np.mean(np.array(program.drifts) <= job.DRIFT_MAX)
-    depths = np.array(program.penetrations) * MILLIMETRES
+    at_rest = np.mean(np.array(program.drifts or [np.inf]) <= job.DRIFT_MAX)
+    depths = np.array(program.penetrations or [np.nan]) * MILLIMETRES
     cells = [
         program.name,
         f"{np.median(per_scene):.3f} ({per_scene.min():.3f}-{per_scene.max():.3f})",
@@ -178,7 +182,7 @@ def row(program: Program, own: Program, arguments: argparse.Namespace) -> str:
         f"{len(done)} of {len(program.scenes)}",
         f"{np.mean([scene['attempts'] for scene in program.scenes]):.2f}",
         f"{at_rest:.0%}",
-        f"{np.max(program.drifts) * MILLIMETRES:.2f}",
+        f"{np.max(program.drifts, initial=0.0) * MILLIMETRES:.2f}",
         f"{np.median(depths):.2f}, {depths.max():.2f}",
     ]
     return f"| {' | '.join(cells)} |"
@@ -220,9 +224,14 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--seed", type=int, default=secrets.randbelow(2**31), help="of the first round; default: drawn")
+    parser.add_argument("--peers", nargs="+", choices=PEERS, default=list(PEERS))
+    parser.add_argument("--attempts", type=int, default=20, help="drops of a peer's scene before it is given up")
+    parser.add_argument("--full-bin", action="store_true", help="the bin of config/full_bin.yaml, not the paper's")
     arguments = parser.parse_args()
+    if arguments.full_bin:
+        tubes.use_full_bin()
     load = os.getloadavg()[0]
-    rows = programs(arguments.build)
+    rows = programs(arguments)
     measure(rows, arguments)
     print(report(rows, arguments, load))
 

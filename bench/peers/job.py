@@ -27,7 +27,6 @@ CHECK_TIME = 1.0  # seconds that a scene runs on to prove that it is at rest
 DRIFT_MAX = 0.0005  # metres that an endpoint may move meanwhile
 PENETRATION_MAX = 0.0005  # metres
 LOST_CHECK_INTERVAL = 0.1  # simulated seconds between looks for a tube that fell past the bin
-ATTEMPTS = 20
 
 
 class Window:
@@ -141,7 +140,7 @@ def write_image(path: Path, window: Window, depth: np.ndarray, label: np.ndarray
 def make_scene(peer: Peer, arguments: argparse.Namespace, case: int) -> dict:
     """One scene, made anew until its tubes lie at rest in the bin; returns its figures."""
     timer = StageTimer()
-    for attempt in range(ATTEMPTS):
+    for attempt in range(arguments.attempts):
         random = np.random.default_rng([arguments.seed, case, attempt])
         with timer.stage("generate"):
             bodies = [tubes.make_body(tube) for tube in tubes.spawn_tubes(arguments.tubes, random)]
@@ -152,7 +151,7 @@ def make_scene(peer: Peer, arguments: argparse.Namespace, case: int) -> dict:
         if simulated is not None and all_inside(peer.centers(world)):
             break
     else:
-        return {"case": case, "attempts": ATTEMPTS, "done": False, "seconds": timer.seconds}
+        return {"case": case, "attempts": arguments.attempts, "done": False, "seconds": timer.seconds}
     nodes = peer.nodes_in_world(world, bodies)
     with timer.stage("render"):
         window = Window(nodes)
@@ -168,8 +167,10 @@ def make_scene(peer: Peer, arguments: argparse.Namespace, case: int) -> dict:
 peer_of_process: Peer
 
 
-def start_process(make_peer: Callable[[], Peer]) -> None:
+def start_process(make_peer: Callable[[], Peer], full_bin: bool) -> None:
     global peer_of_process
+    if full_bin:
+        tubes.use_full_bin()
     peer_of_process = make_peer()
 
 
@@ -183,6 +184,8 @@ def parse_arguments(description: str) -> argparse.Namespace:
     parser.add_argument("--cases", type=int, default=20)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--attempts", type=int, default=20, help="drops of a scene before it is given up")
+    parser.add_argument("--full-bin", action="store_true", help="the bin of config/full_bin.yaml")
     parser.add_argument("--output", type=Path, required=True)
     parser.add_argument("--same-gates", action="store_true", help="prove rest and penetration as generate_dataset does")
     parser.add_argument("--report-drift", action="store_true", help="measure each finished scene's drift (not timed)")
@@ -193,7 +196,7 @@ def main(make_peer: Callable[[], Peer], description: str) -> None:
     """The command line of a peer: makes the scenes and writes a JSON line for each to OUTPUT/figures.jsonl."""
     arguments = parse_arguments(description)
     arguments.output.mkdir(parents=True, exist_ok=True)
-    with multiprocessing.Pool(arguments.jobs, start_process, (make_peer,)) as pool:
+    with multiprocessing.Pool(arguments.jobs, start_process, (make_peer, arguments.full_bin)) as pool:
         scenes = pool.starmap(
             make_scene_in_process, [(arguments, case) for case in range(arguments.cases)], chunksize=1
         )

@@ -16,6 +16,13 @@ MASS = 0.055
 FRICTION = 1.16  # of the published simulation, tube on tube
 BIN_LENGTH, BIN_WIDTH, BIN_HEIGHT, WALL_THICKNESS = 0.55, 0.37, 0.20, 0.02
 
+
+def use_full_bin() -> None:
+    """The bin of config/full_bin.yaml instead of the paper's."""
+    global BIN_LENGTH, BIN_WIDTH, BIN_HEIGHT
+    BIN_LENGTH, BIN_WIDTH, BIN_HEIGHT = 1.0, 0.8, 0.6
+
+
 SPAWN_CLEARANCE = 0.005
 SPAWN_TRIES = 200
 SPAWN_LIFT = 0.02
