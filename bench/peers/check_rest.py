@@ -82,7 +82,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=1.0)
     parser.add_argument("--jobs", type=int, default=1)
     arguments = parser.parse_args()
-    scenes = sorted(path.parent for path in arguments.dataset.glob("*/*/tubes.txt"))[: arguments.scenes]
+    scenes = sorted(path.parent for path in arguments.dataset.glob("**/tubes.txt"))[: arguments.scenes]
     if not scenes:
         raise SystemExit(f"check_rest: no scene in {arguments.dataset}")
     print("| passes against slip | tubes | median, mm | under 0.5 mm | under 1 mm | under 5 mm | largest, mm |")
