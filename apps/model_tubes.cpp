@@ -29,6 +29,8 @@ Examples:
       a scanner's file in millimetres; whatever stands around the tubes is found in the cloud (docs/your_own_scanner.md)
   model_tubes scan.ply --radius 0.008,0.016 --output model
       tubes of two known radii
+  model_tubes scan.ply --tube-shape 0.07,90,0.1,90,0.07 --output model
+      parts of one kind, bent twice at right angles to a U, also where few of them are seen whole
   model_tubes dataset_a --output results --ratios 0.1:1.0:0.1 --jobs 4
       every cloud of a data set at ten ratios, for evaluate (see docs/results_format.md)
   model_tubes dataset_a --output results --method region_growing --ratios 0.3
@@ -51,6 +53,8 @@ struct Arguments {
   std::string ratios;
   std::vector<double> radii;
   std::optional<double> tube_length;
+  std::vector<std::string> tube_shapes;
+  double bend_radius = 0.0;
   std::optional<std::uint64_t> seed;
   double scale = 1.0;
   int jobs = jobs::available_cores();
@@ -81,6 +85,16 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->delimiter(',')
       ->type_name("R[,R...]");
   app.add_option("--tube-length", arguments.tube_length, "Length of every tube in metres; without it, estimated");
+  auto* shape =
+      app.add_option("--tube-shape", arguments.tube_shapes,
+                     "Shape of the parts: straight stretches in metres and the bends between them in degrees, "
+                     "BEND@ROTATION where a bend's plane is rotated; once for each kind of part")
+          ->allow_extra_args(false)
+          ->type_name("L,BEND,L[,BEND,L...]");
+  app.add_option("--bend-radius", arguments.bend_radius,
+                 "Radius of the centreline in the bends of --tube-shape, metres; without it, corners")
+      ->needs(shape)
+      ->type_name("R");
   app.add_option(
          "--bin-pose", arguments.bin_pose,
          "Where the configuration's bin stands, about: the middle of its inner floor in metres, and roll, pitch, "
@@ -162,10 +176,17 @@ results::ModelConfig resolve_config(const Arguments& arguments) {
   set_vector("bin_rotation_deg", arguments.bin_pose, 3);
   if (!arguments.bin_pose.empty()) text += "bin_source: config\n";
   set("tube_length", arguments.tube_length);
+  std::vector<modeling::TubeShape> shapes;
+  for (const std::string& told : arguments.tube_shapes) {
+    shapes.push_back(modeling::parse_tube_shape(told));
+    shapes.back().bend_radius = arguments.bend_radius;
+  }
+  if (!shapes.empty()) text += write_yaml([&](Fields& fields) { fields.list("tube_shapes", shapes, ""); });
   set("seed", arguments.seed);
   if (!arguments.method.empty() && arguments.method != "both") text += "method: " + arguments.method + "\n";
   if (arguments.ratio) text += fmt::format("filtering: {{ratio: {}}}\n", *arguments.ratio);
-  if (!text.empty()) read_yaml_text(text, "command line", [&](Fields& fields) { describe(fields, config); });
+  if (!text.empty())
+    check(config.modeling, read_yaml_text(text, "command line", [&](Fields& fields) { describe(fields, config); }));
   return config;
 }
 
@@ -216,7 +237,10 @@ results::BatchOptions batch_options(const Arguments& arguments, const results::M
   options.methods = {config.modeling.method};
   options.ratios = {config.modeling.filtering.ratio};
   options.cases = arguments.cases;
-  if (arguments.method == "both") options.methods = modeling::all_methods();
+  if (arguments.method == "both") {
+    if (!config.modeling.tube_shapes.empty()) throw_config_error("tube_shapes is for method centerline, not for both");
+    options.methods = modeling::all_methods();
+  }
   if (!arguments.ratios.empty()) options.ratios = results::parse_ratios(arguments.ratios);
   return options;
 }
@@ -252,7 +276,8 @@ int model_many(results::BatchOptions options, const results::ModelConfig& config
 /// Everything but what to do it with is as the first call said.
 int resume(const Arguments& arguments) {
   if (!arguments.config.empty() || !arguments.method.empty() || arguments.ratio || !arguments.ratios.empty() ||
-      !arguments.radii.empty() || arguments.tube_length || arguments.seed || arguments.cases > 0)
+      !arguments.radii.empty() || arguments.tube_length || !arguments.tube_shapes.empty() || arguments.seed ||
+      arguments.cases > 0)
     throw_config_error("--resume takes the options of the modeller from {}/index.json", arguments.resume.front());
   const results::ResumedBatch batch = results::resume_batch(arguments.resume);
   return model_many(batch.options, batch.config, arguments);

@@ -24,6 +24,8 @@ from field_table import model, score, split_arguments, write_organized
 
 # The depth images do not say their scale. With these the rods' straight stretches come out round: 8 bit over 62 mm.
 FOCAL_PX, FAR_M, RANGE_M = 2431.0, 1.128, 0.062
+# The rods' shape, from those that are seen whole in these scans.
+ROD = ['--tube-shape', '0.053,90,0.067,90,0.053', '--bend-radius', '0.0175']
 
 
 def rod_scan(image_path):
@@ -67,11 +69,11 @@ def rods(program, folder, options, pictures):
     recalls = {}
     for labels in sorted((HERE / 'labels').glob('*.npz'), key=lambda path: int(re.search(r'\d+', path.stem)[0])):
         points, truth = rod_scan(folder / f'{labels.stem}.png'), np.load(labels)['label'].astype(int)
-        for method in 'centerline', 'region_growing':
+        for method, told in ('centerline', []), ('centerline, shape told', ROD), ('region_growing', []):
             with tempfile.TemporaryDirectory() as work:
                 cloud = Path(work) / 'cloud.pcd'
                 write_organized(points, np.zeros(3), cloud)
-                full, seconds = model(program, cloud, 1.0, ['--method', method, *options], Path(work))
+                full, seconds = model(program, cloud, 1.0, ['--method', method.split(',')[0], *told, *options], Path(work))
             told = truth.ravel() != 255
             recall, false, _ = score(truth.ravel()[told], full[told])
             is_rod = (truth.ravel() > 0) & told & np.isfinite(full['z'])

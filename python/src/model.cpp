@@ -35,7 +35,7 @@ struct Model {
 
 ModelConfig parse_model_config(const std::string& text) {
   ModelConfig config;
-  read_yaml_text(text, "config", [&](Fields& fields) { describe(fields, config); });
+  check(config.modeling, read_yaml_text(text, "config", [&](Fields& fields) { describe(fields, config); }));
   return config;
 }
 
@@ -44,7 +44,7 @@ Model model(const PointArray& points, const PoseArray& viewpoint, ModelConfig co
   results::CloudToModel input{.path = "points", .cloud = cloud_of_points(points), .scene = std::nullopt, .hashes = {}};
   input.cloud.world_from_sensor = pose_of(viewpoint);
   const nb::gil_scoped_release without_lock;
-  read_yaml_text(request, "model", [&](Fields& fields) { describe(fields, config); });
+  check(config.modeling, read_yaml_text(request, "model", [&](Fields& fields) { describe(fields, config); }));
   config.modeling.label_all = true;
   modeling::ModelingResult result = results::model_cloud(input, config);
   return {std::move(result), std::move(config), points.ndim() == 3 ? input.cloud.height : 1, input.cloud.width};

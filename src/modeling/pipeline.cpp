@@ -55,13 +55,34 @@ bool is_doubtful(const TubeModel& tube) {
   return tube.length() < kShort * tube.radius && evidence < kEvidence;
 }
 
-std::vector<TubeModel> tubes_of_class(const TubeClass& found, const OcclusionTest& scan, double tube_length,
-                                      ModelingResult& result) {
-  const OcclusionTest occlusion = scan.with_radius(found.radius);
-  Joining joining = join_pieces(found.pieces, occlusion, tube_length);
-  if (result.tube_length <= 0.0) result.tube_length = joining.tube_length;
-  return joining.tubes_branch ? join_branches(joining.paths, found.radius, occlusion, tube_length)
-                              : unbranched(std::move(joining.paths), found.radius);
+double length_of(const std::vector<TubePiece>& pieces) {
+  double length = 0.0;
+  for (const TubePiece& piece : pieces) length += piece.length();
+  return length;
+}
+
+/// Step 4 of `--method centerline`.
+std::vector<TubeModel> join_classes(const std::vector<TubeClass>& classes, const OcclusionTest& scan,
+                                    const ModelingOptions& options, ModelingResult& result) {
+  std::vector<std::vector<Vec3>> told;
+  for (const TubeShape& shape : options.tube_shapes) told.push_back(centerline_of(shape));
+  std::vector<TubeModel> tubes;
+  double seen = 0.0, explained = 0.0;  // metres
+  for (const TubeClass& found : classes) {
+    const OcclusionTest occlusion = scan.with_radius(found.radius);
+    Joining joining = told.empty() ? join_pieces(found.pieces, occlusion, options.tube_length)
+                                   : join_pieces_by_shapes(found.pieces, occlusion, told);
+    if (result.tube_length <= 0.0) result.tube_length = joining.tube_length;
+    seen += length_of(found.pieces);
+    explained += joining.explained * length_of(found.pieces);
+    std::ranges::move(joining.tubes_branch ? join_branches(joining.paths, found.radius, occlusion, options.tube_length)
+                                           : unbranched(std::move(joining.paths), found.radius),
+                      std::back_inserter(tubes));
+  }
+  if (!told.empty() && explained < seen / 2.0)
+    result.found.doubts.push_back(
+        fmt::format("{:.0f} % of what is seen of tubes lies on copies of the told shape", 100.0 * explained / seen));
+  return tubes;
 }
 
 /// Steps 2 to 4 of `--method region_growing`.
@@ -225,6 +246,8 @@ void describe(Fields& fields, ModelingOptions& options) {
   fields.list("other_radii", options.other_radii, "where tubes of several radii are told");
   fields.number("tube_length", options.tube_length, {0.0, 100.0}, "m",
                 "length of every tube; 0: a common one where it explains the scan best");
+  fields.list("tube_shapes", options.tube_shapes,
+              "shapes of the bent parts in the scene, for method centerline; none: found where tubes are bent alike");
   fields.vector("up", options.up, {-1.0, 1.0}, "",
                 "against gravity, in the cloud's frame; zeros: found from what the tubes lie on");
   fields.vector("crop_min", options.crop_min, {-1000.0, 1000.0}, "m",
@@ -235,6 +258,15 @@ void describe(Fields& fields, ModelingOptions& options) {
                [&](Fields& inner) { describe(inner, options.region_growing); });
   fields.group("greedy_joining", "step 4 of that method",
                [&](Fields& inner) { describe(inner, options.greedy_joining); });
+}
+
+void check(const ModelingOptions& options, const KeyPlaces& places) {
+  if (options.tube_shapes.empty()) return;
+  for (std::size_t k = 0; k < options.tube_shapes.size(); ++k)
+    check(options.tube_shapes[k], places, fmt::format("tube_shapes[{}]", k));
+  if (options.method != ModelingMethod::centerline)
+    places.fail("tube_shapes", fmt::format("is for method centerline, not for {}", name_of(options.method)));
+  if (options.tube_length > 0.0) places.fail("tube_shapes", "tells the tubes' length; leave tube_length out");
 }
 
 ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& options) {
@@ -271,8 +303,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   watch.lap(result.seconds.fitting);
 
   if (options.method == ModelingMethod::centerline) {
-    for (const TubeClass& found : classes)
-      std::ranges::move(tubes_of_class(found, scan, options.tube_length, result), std::back_inserter(result.tubes));
+    result.tubes = join_classes(classes, scan, options, result);
     if (!background.is_known) std::erase_if(result.tubes, is_doubtful);
     watch.lap(result.seconds.joining);
   } else if (result.radius > 0.0) {

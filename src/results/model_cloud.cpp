@@ -90,7 +90,9 @@ void describe(Fields& fields, ModelConfig& config) {
 
 ModelConfig load_model_config(const std::string& path) {
   ModelConfig config;
-  scene::check(config.bin, read_yaml_file(path, [&](Fields& fields) { describe(fields, config); }), "bin");
+  const KeyPlaces places = read_yaml_file(path, [&](Fields& fields) { describe(fields, config); });
+  scene::check(config.bin, places, "bin");
+  modeling::check(config.modeling, places);
   return config;
 }
 

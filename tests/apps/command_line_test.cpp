@@ -26,6 +26,7 @@ constexpr WrongNumber kWrong[] = {
     {"model_tubes", "--seed", "-3", "a whole number from 0"},
     {"model_tubes", "--radius", "8mm", "a number is needed"},
     {"model_tubes", "--tube-length", "10mm", "a number is needed"},
+    {"model_tubes", "--bend-radius", "2cm", "a number is needed"},
     {"model_tubes", "--up", "1,2,x", "a number is needed"},
     {"model_tubes", "--cases", "-5", "1 to 1000000"},
     {"generate_dataset", "--seed", "99999999999999999999", "a whole number from 0"},

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "modeling/joining/common_shape.hpp"
 #include "modeling/joining/sampled_curve.hpp"
@@ -89,6 +90,10 @@ TEST(CommonShape, TubesOfRandomBendsAndStraightOnesHaveNone) {
   }
 }
 
+using Centerlines = std::vector<std::vector<Vec3>>;
+
+const Centerlines kShapes = {smooth_samples(kU, kRadius / 2.0, kRadius)};
+
 class ShapeJoiningUnderLid : public LidScene {
  protected:
   /// Two corners under the lid, back to back: straight on, either's leg leads to the other's middle.
@@ -100,7 +105,7 @@ class ShapeJoiningUnderLid : public LidScene {
 };
 
 TEST_F(ShapeJoiningUnderLid, JoinsWhatOneCopyExplains) {
-  const ShapeJoining joining = join_by_shape(back_to_back(), smooth_samples(kU, kRadius / 2.0, kRadius), occlusion());
+  const ShapeJoining joining = join_by_shapes(back_to_back(), kShapes, occlusion());
   EXPECT_TRUE(joining.rest.empty());
   EXPECT_DOUBLE_EQ(joining.explained, 1.0);
   ASSERT_EQ(joining.paths.size(), 2u);
@@ -117,9 +122,42 @@ TEST_F(ShapeJoiningUnderLid, JoinsWhatOneCopyExplains) {
 TEST_F(ShapeJoiningUnderLid, LeavesWhatTheScanShowsToBeElsewhere) {
   // In the open, where a corner would be seen.
   std::vector<TubePiece> pieces = without_first_corner(turned(0.0, {0.3, 0.3, 0}), 0.06);
-  const ShapeJoining joining = join_by_shape(pieces, smooth_samples(kU, kRadius / 2.0, kRadius), occlusion());
+  const ShapeJoining joining = join_by_shapes(pieces, kShapes, occlusion());
   for (const TubePath& path : joining.paths)  // the second piece's two sections alone
     EXPECT_GT(distance_to_polyline(pieces[0].nodes.front(), path.nodes), 2.0 * kRadius);
+}
+
+TEST_F(ShapeJoiningUnderLid, TellsTwoKindsApart) {
+  // The L has the U's legs for both of its own; one of each kind lies in the open, corners and all.
+  const std::vector<Vec3> l = {{-0.3, 0, 0}, {0, 0, 0}, {0, -kLeg, 0}};
+  const std::vector<TubePiece> pieces = {piece_along(moved(kU, turned(30.0, {-0.2, 0.4, 0}))),
+                                         piece_along(moved(l, turned(-70.0, {0.2, -0.4, 0})))};
+  const Joining joining = join_pieces_by_shapes(pieces, occlusion(), Centerlines{l, kU});
+  EXPECT_DOUBLE_EQ(joining.explained, 1.0);
+  ASSERT_EQ(joining.paths.size(), 2u);
+  for (const TubePath& path : joining.paths) {
+    const double length = polyline_length(path.nodes);
+    EXPECT_LT(std::min(std::abs(length - kLength), std::abs(length - 0.3 - kLeg)), 3.0 * kRadius);
+    EXPECT_EQ(std::ranges::count(path.bridged, true), 0);
+  }
+}
+
+TEST_F(ShapeJoiningUnderLid, ASolidPartIsNotItsMirrorImage) {
+  const std::vector<Vec3> part = {{-kLeg, 0, 0}, {0, 0, 0}, {0, -kMiddle, 0}, {0, -kMiddle, kLeg}};
+  std::vector<Vec3> mirrored = part;
+  for (Vec3& node : mirrored) node.z() = -node.z();
+  const std::vector<TubePiece> pieces = {piece_along(moved(part, turned(30.0, {-0.2, 0.4, 0})))};
+  EXPECT_DOUBLE_EQ(join_pieces_by_shapes(pieces, occlusion(), Centerlines{part}).explained, 1.0);
+  EXPECT_LT(join_pieces_by_shapes(pieces, occlusion(), Centerlines{mirrored}).explained, 0.8);
+}
+
+TEST_F(ShapeJoiningUnderLid, ABentPieceIsACopyByItself) {
+  // Bent so little that nothing is cut.
+  const std::vector<Vec3> part = {{-0.3, 0, 0}, {0, 0, 0}, {0.3 * std::cos(0.5), 0.3 * std::sin(0.5), 0}};
+  const std::vector<TubePiece> pieces = {piece_along(moved(part, turned(30.0, {-0.2, 0.4, 0})))};
+  const Joining joining = join_pieces_by_shapes(pieces, occlusion(), Centerlines{part});
+  EXPECT_DOUBLE_EQ(joining.explained, 1.0);
+  EXPECT_EQ(joining.paths.size(), 1u);
 }
 
 TEST_F(ShapeJoiningUnderLid, TheSceneShowsTheShapeItself) {

@@ -9,6 +9,7 @@
 #include "tubebin/modeling/greedy_joining.hpp"
 #include "tubebin/modeling/region_growing.hpp"
 #include "tubebin/modeling/tube_model.hpp"
+#include "tubebin/modeling/tube_shape.hpp"
 
 namespace tubebin::modeling {
 
@@ -32,6 +33,7 @@ struct ModelingOptions {
   double radius = 0.0;                   ///< metres; 0: all radii are estimated from the cloud
   std::vector<OtherRadius> other_radii;  ///< beside `radius`
   double tube_length = 0.0;              ///< metres; 0: estimated from the cloud where its tubes agree
+  std::vector<TubeShape> tube_shapes;    ///< of the kinds of part in the scene; none: found where tubes are bent alike
   Vec3 up = Vec3::Zero();        ///< against gravity, in the cloud's frame; zero: found from what the tubes lie on
   Vec3 crop_min = Vec3::Zero();  ///< metres, of the box that tubes are looked for in; as crop_max: everywhere
   Vec3 crop_max = Vec3::Zero();
@@ -43,6 +45,8 @@ struct ModelingOptions {
 
 void describe(Fields& fields, OtherRadius& other);
 void describe(Fields& fields, ModelingOptions& options);
+/// Throws ConfigError where options contradict each other.
+void check(const ModelingOptions& options, const KeyPlaces& places);
 
 /// Wall-clock seconds of each step.
 struct StageSeconds {

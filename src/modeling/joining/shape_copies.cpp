@@ -85,17 +85,23 @@ class CopyFinder {
   void consider(Pose pose) {
     constexpr int kRounds = 4, kMostTries = 8;
     std::vector<PlacedSection> placed = explained_by(pose, 1.5 * radius_);
-    if (placed.size() < 2 || ++tries_[places_of(placed)] > kMostTries) return;
-    for (int round = 0; round < kRounds && placed.size() >= 2; ++round) {
+    if (!fix_pose(placed) || ++tries_[places_of(placed)] > kMostTries) return;
+    for (int round = 0; round < kRounds && fix_pose(placed); ++round) {
       pose = fitted(pose, placed);
       placed = explained_by(pose, radius_);
     }
-    if (placed.size() < 2) return;
-    ShapeCopy copy{.pose = pose, .placed = std::move(placed), .cost = 0.0};
+    if (!fix_pose(placed)) return;
+    ShapeCopy copy{.shape = &shape_, .pose = pose, .placed = std::move(placed), .cost = 0.0};
     copy.cost = misfit_cost(copy) + hidden_cost(copy);
     if (copy.cost > kCopyCostLimit) return;
     const auto [known, is_new] = copies_.try_emplace(places_of(copy.placed), copy);
     if (!is_new && copy.cost < known->second.cost) known->second = std::move(copy);
+  }
+
+  /// Two sections do, and one that bends; a straight one may lie anywhere along a straight stretch, and turned about it.
+  bool fix_pose(const std::vector<PlacedSection>& placed) const {
+    if (placed.size() != 1) return !placed.empty();
+    return sagitta(sections_[placed.front().section].samples) >= 2.0 * radius_;
   }
 
   static Places places_of(const std::vector<PlacedSection>& placed) {
@@ -205,7 +211,7 @@ class CopyFinder {
       const bool is_near = box_.exteriorDistance(middle) < section.length + 2.0 * radius_;
       const auto is_k = [&](const PlacedSection& each) { return each.section == k; };
       if (section.length >= 4.0 * radius_ && is_near && std::ranges::none_of(copy.placed, is_k) &&
-          !lies_on_copy(section, copy, shape_, radius_))
+          !lies_on_copy(section, copy, radius_))
         others.push_back(&section);
     }
     return others;
@@ -237,10 +243,10 @@ std::vector<ShapeCopy> find_shape_copies(std::span<const Section> sections, cons
   return CopyFinder(sections, shape, radius, occlusion).find();
 }
 
-bool lies_on_copy(const Section& section, const ShapeCopy& copy, const std::vector<Vec3>& shape, double radius) {
+bool lies_on_copy(const Section& section, const ShapeCopy& copy, double radius) {
   const Pose inverse = copy.pose.inverse();
   return std::ranges::all_of(section.samples, [&](const Vec3& sample) {
-    return distance_to_polyline(inverse * sample, shape) < 1.5 * radius;
+    return distance_to_polyline(inverse * sample, *copy.shape) < 1.5 * radius;
   });
 }
 

@@ -25,20 +25,21 @@ struct PlacedSection {
 };
 
 struct ShapeCopy {
+  const std::vector<Vec3>* shape;     ///< that it is a copy of, by samples every half radius
   Pose pose;                          ///< that the copy lies in, in the cloud's frame
-  std::vector<PlacedSection> placed;  ///< at least two, in the shape's order
+  std::vector<PlacedSection> placed;  ///< in the shape's order
   double cost = 0.0;                  ///< nats: -log of how much likelier the scan is with it than without
 };
 
 /// A copy that costs more is ruled out.
 constexpr double kCopyCostLimit = 9.0;
 
-/// All copies of `shape`, a centreline by samples every half radius, that explain two sections or more, the best for each
-/// set of sections.
+/// All copies of `shape`, a centreline by samples every half radius, that explain sections enough to know where they lie, the
+/// best for each set of sections. Keeps a reference to `shape`.
 std::vector<ShapeCopy> find_shape_copies(std::span<const Section> sections, const std::vector<Vec3>& shape,
                                          double radius, const OcclusionTest& occlusion);
 
 /// Whether the curve lies on the copy from one end to the other, as far as fits tell.
-bool lies_on_copy(const Section& section, const ShapeCopy& copy, const std::vector<Vec3>& shape, double radius);
+bool lies_on_copy(const Section& section, const ShapeCopy& copy, double radius);
 
 }  // namespace tubebin::modeling

@@ -1,6 +1,7 @@
 #include "modeling/joining/shape_joining.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "modeling/joining/cover_margins.hpp"
 #include "modeling/joining/sampled_curve.hpp"
@@ -87,9 +88,10 @@ CopyCover cheapest_copies(const std::vector<Section>& sections, const std::vecto
 }
 
 /// The copy's sections in a row, and its own course where none shows it.
-TubePath path_of(const ChosenCopy& chosen, const std::vector<Section>& sections, const std::vector<Vec3>& shape) {
+TubePath path_of(const ChosenCopy& chosen, const std::vector<Section>& sections) {
   constexpr std::size_t kRadius = 2, kDiameter = 4;  // samples
   const ShapeCopy& copy = chosen.copy;
+  const std::vector<Vec3>& shape = *copy.shape;
   TubePath path;
   path.whole_odds = chosen.whole_odds;
   const auto add = [&](const Vec3& node) {
@@ -122,25 +124,28 @@ TubePath path_of(const ChosenCopy& chosen, const std::vector<Section>& sections,
 
 }  // namespace
 
-ShapeJoining join_by_shape(const std::vector<TubePiece>& pieces, const std::vector<Vec3>& shape,
-                           const OcclusionTest& occlusion) {
+ShapeJoining join_by_shapes(const std::vector<TubePiece>& pieces, std::span<const std::vector<Vec3>> shapes,
+                            const OcclusionTest& occlusion) {
   ShapeJoining result;
   if (pieces.empty()) return result;
-  result.tube_length = polyline_length(shape);
+  if (shapes.size() == 1) result.tube_length = polyline_length(shapes.front());
   const double radius = pieces.front().radius;
   const std::vector<Section> sections = sections_of(pieces);
-  const CopyCover cover = cheapest_copies(sections, find_shape_copies(sections, shape, radius, occlusion), radius);
+  std::vector<ShapeCopy> copies;
+  for (const std::vector<Vec3>& shape : shapes)
+    std::ranges::move(find_shape_copies(sections, shape, radius, occlusion), std::back_inserter(copies));
+  const CopyCover cover = cheapest_copies(sections, copies, radius);
   result.cost = cover.cost;
   std::vector<bool> is_placed(sections.size(), false);
   for (const ChosenCopy& chosen : cover.chosen) {
-    result.paths.push_back(path_of(chosen, sections, shape));
+    result.paths.push_back(path_of(chosen, sections));
     for (const PlacedSection& each : chosen.copy.placed) is_placed[each.section] = true;
   }
   double all = 0.0;
   for (std::size_t k = 0; k < sections.size(); ++k) {
     const Section& section = sections[k];
     all += section.length;
-    const auto explains = [&](const ChosenCopy& chosen) { return lies_on_copy(section, chosen.copy, shape, radius); };
+    const auto explains = [&](const ChosenCopy& chosen) { return lies_on_copy(section, chosen.copy, radius); };
     if (is_placed[k] || std::ranges::any_of(cover.chosen, explains)) {
       result.explained += section.length;
     } else {

@@ -9,6 +9,7 @@
 #include "modeling/joining/chains.hpp"
 #include "modeling/joining/common_shape.hpp"
 #include "modeling/joining/cover_margins.hpp"
+#include "modeling/joining/sampled_curve.hpp"
 #include "modeling/joining/shape_joining.hpp"
 
 namespace tubebin::modeling {
@@ -153,11 +154,17 @@ std::optional<ShapeJoining> with_common_shape(const Cover& cover, const std::vec
                                               const OcclusionTest& occlusion) {
   std::optional<ShapeJoining> best;
   for (const std::vector<Vec3>& shape : possible_shapes(seen_tubes(cover), pieces)) {
-    ShapeJoining joining = join_by_shape(pieces, shape, occlusion);
+    ShapeJoining joining = join_by_shapes(pieces, {&shape, 1}, occlusion);
     if (joining.explained < 0.75 || (best && joining.cost >= best->cost)) continue;
     best = std::move(joining);
   }
   return best;
+}
+
+/// Chains what the copies leave.
+Joining with_rest(ShapeJoining joining, const OcclusionTest& occlusion, double tube_length) {
+  std::ranges::move(join_pieces(joining.rest, occlusion, tube_length, false).paths, std::back_inserter(joining.paths));
+  return {.paths = std::move(joining.paths), .tube_length = joining.tube_length, .explained = joining.explained};
 }
 
 }  // namespace
@@ -172,13 +179,20 @@ Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& o
   if (tube_length <= 0.0 && !search.tubes_branch())
     cover = with_common_length(with_longest_length(cover, search), search);
   if (tries_shape) {
-    if (auto alike = with_common_shape(cover, pieces, occlusion)) {
-      std::ranges::move(join_pieces(alike->rest, occlusion, tube_length, false).paths,
-                        std::back_inserter(alike->paths));
-      return {.paths = std::move(alike->paths), .tube_length = alike->tube_length, .tubes_branch = false};
-    }
+    if (auto alike = with_common_shape(cover, pieces, occlusion))
+      return with_rest(std::move(*alike), occlusion, tube_length);
   }
   return {.paths = paths_of(cover), .tube_length = cover.lengths.common, .tubes_branch = search.tubes_branch()};
+}
+
+Joining join_pieces_by_shapes(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion,
+                              std::span<const std::vector<Vec3>> centerlines) {
+  if (pieces.empty()) return {};
+  const double radius = pieces.front().radius;
+  std::vector<std::vector<Vec3>> shapes;
+  // As smooth as the pieces are that they are compared with.
+  for (const std::vector<Vec3>& nodes : centerlines) shapes.push_back(smooth_samples(nodes, radius / 2.0, radius));
+  return with_rest(join_by_shapes(pieces, shapes, occlusion), occlusion, 0.0);
 }
 
 }  // namespace tubebin::modeling

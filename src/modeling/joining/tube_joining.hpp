@@ -1,6 +1,7 @@
 /// Joining of `--method centerline` (step 4 of the pipeline): pieces become tubes, all at once.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "modeling/joining/join_candidates.hpp"
@@ -11,6 +12,7 @@ struct Joining {
   std::vector<TubePath> paths;
   double tube_length = 0.0;   ///< metres: as given, or the common length of the scene's tubes; 0 where there is none
   bool tubes_branch = false;  ///< enough pieces start on another's side; join_branches then makes tubes of the paths
+  double explained = 0.0;     ///< part of the pieces' length on copies of a shape
 };
 
 /// Chooses the chains of pieces that explain the scan best: each piece in one tube, joins by their likelihood, tubes of
@@ -20,5 +22,10 @@ struct Joining {
 /// pieces first, unless `tries_shape` is false, and chains what the copies leave.
 Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length,
                     bool tries_shape = true);
+
+/// The same where the kinds of part are known: copies of their centrelines take up the pieces that they explain, and chains
+/// the rest.
+Joining join_pieces_by_shapes(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion,
+                              std::span<const std::vector<Vec3>> centerlines);
 
 }  // namespace tubebin::modeling
