@@ -289,7 +289,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
                                                         .length = input.bin->length,
                                                         .width = input.bin->width,
                                                         .height = input.bin->height})
-                               : find_bin(background.regions, input.points, background.foreground);
+                               : find_bin(background, result.found.up, input.points);
   OcclusionTest scan(input, projection, cloud.spacing * std::sqrt(options.filtering.ratio), 0.0);
   scan.add_solids(solids_of(background));
   watch.lap(result.seconds.filtering);

@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 namespace tubebin::modeling {
 namespace {
 
-constexpr std::size_t kBinSample = 200000;
+constexpr std::size_t kSample = 40000, kDenseSample = 300000;
 constexpr double kLean = 0.26;      ///< the sine of 15 degrees
 constexpr double kAlong = 0.985;    ///< the cosine of 10 degrees
-constexpr double kOverhang = 0.02;  ///< metres that a face may reach beyond where it should end
+constexpr double kOverhang = 0.02;  ///< metres that a wall may reach beyond where it should end
 constexpr double kThickestWall = 0.03;
 
-/// Of a wall, level and outward from the middle of the floor.
+/// Of a wall, level and outward.
 Vec3 outward_of(const FlatRegion& wall, const Vec3& up) {
   return -(wall.plane.normal - wall.plane.normal.dot(up) * up).normalized();
 }
@@ -23,83 +24,10 @@ double distance_to(const FlatRegion& wall, const Vec3& place, const Vec3& outwar
   return -wall.plane.height(place) / wall.plane.normal.dot(outward);
 }
 
-/// A floor with walls about it; those at +x, -x, +y, -y.
-struct Candidate {
-  const FlatRegion* floor;
-  std::array<const FlatRegion*, 4> walls;
-  BinFound bin;
-
-  bool is_above_floor(const Vec3& p) const {
-    const Vec3 own = bin.world_from_bin.inverse() * p;
-    return std::abs(own.x()) < bin.length / 2.0 && std::abs(own.y()) < bin.width / 2.0 && own.z() > 0.0;
-  }
-};
-
-/// Regions that stand on the floor's plane and look toward its middle.
-std::vector<const FlatRegion*> walls_about(const FlatRegion& floor, const std::vector<FlatRegion>& regions) {
-  std::vector<const FlatRegion*> walls;
-  for (const FlatRegion& region : regions)
-    if (std::abs(region.plane.normal.dot(floor.plane.normal)) < kLean && floor.plane.height(region.center) > 0.0 &&
-        region.plane.height(floor.center) > 0.0)
-      walls.push_back(&region);
-  return walls;
-}
-
-/// The nearest of those that look along a direction.
-const FlatRegion* nearest_wall(const std::vector<const FlatRegion*>& walls, const FlatRegion& floor,
-                               const Vec3& outward) {
-  const FlatRegion* nearest = nullptr;
-  for (const FlatRegion* wall : walls)
-    if (outward_of(*wall, floor.plane.normal).dot(outward) > kAlong &&
-        (!nearest || distance_to(*wall, floor.center, outward) < distance_to(*nearest, floor.center, outward)))
-      nearest = wall;
-  return nearest;
-}
-
-/// Every wall stands beside the floor, and the floor ends at the walls.
-bool fits(const Candidate& candidate) {
-  const BinFound& bin = candidate.bin;
-  const Pose bin_from_world = bin.world_from_bin.inverse();
-  // A rectangle about what tubes leave of the floor may be askew; a table's is far larger.
-  if (candidate.floor->area > 1.5 * bin.length * bin.width) return false;
-  return std::ranges::all_of(candidate.walls, [&](const FlatRegion* wall) {
-    const Vec3 middle = bin_from_world * wall->center;
-    const double lean = kLean * middle.z() + kOverhang;
-    return std::abs(middle.x()) < bin.length / 2.0 + lean && std::abs(middle.y()) < bin.width / 2.0 + lean;
-  });
-}
-
-std::optional<Candidate> bin_on(const FlatRegion& floor, const std::vector<FlatRegion>& regions) {
-  const std::vector<const FlatRegion*> walls = walls_about(floor, regions);
-  if (walls.size() < 4) return std::nullopt;
-  const Vec3 up = floor.plane.normal;
-  const Vec3 first = outward_of(*walls.front(), up), second = up.cross(first);
-  Candidate candidate{.floor = &floor, .walls = {}, .bin = {}};
-  std::array<Vec3, 4> outward = {first, -first, second, -second};
-  for (std::size_t k = 0; k < outward.size(); ++k) {
-    candidate.walls[k] = nearest_wall(walls, floor, outward[k]);
-    if (candidate.walls[k] == nullptr) return std::nullopt;
-    outward[k] = outward_of(*candidate.walls[k], up);
-  }
-  // The four walls' mean direction, of a frame with right angles.
-  Vec3 x = (outward[0] - outward[1] + outward[2].cross(up) - outward[3].cross(up)).normalized();
-  const auto width_along = [&](const Vec3& axis, std::size_t ahead, std::size_t behind) {
-    return distance_to(*candidate.walls[ahead], floor.center, axis) +
-           distance_to(*candidate.walls[behind], floor.center, -axis);
-  };
-  if (width_along(x, 0, 1) < width_along(up.cross(x), 2, 3)) {
-    candidate.walls = {candidate.walls[2], candidate.walls[3], candidate.walls[1], candidate.walls[0]};
-    x = up.cross(x);
-  }
-  const Vec3 y = up.cross(x);
-  BinFound& bin = candidate.bin;
-  bin.length = width_along(x, 0, 1);
-  bin.width = width_along(y, 2, 3);
-  bin.world_from_bin.linear() << x, y, up;
-  bin.world_from_bin.translation() = floor.center - floor.plane.height(floor.center) * up +
-                                     (distance_to(*candidate.walls[0], floor.center, x) - bin.length / 2.0) * x +
-                                     (distance_to(*candidate.walls[2], floor.center, y) - bin.width / 2.0) * y;
-  return fits(candidate) ? std::optional(candidate) : std::nullopt;
+/// Half of what the wall's rectangle measures along a direction.
+double half_extent(const FlatRegion& wall, const Vec3& along) {
+  return wall.half_extents[0] * std::abs(wall.axes[0].dot(along)) +
+         wall.half_extents[1] * std::abs(wall.axes[1].dot(along));
 }
 
 double quantile(std::vector<double>& values, double part) {
@@ -108,50 +36,195 @@ double quantile(std::vector<double>& values, double part) {
   return *at;
 }
 
-/// As high as what the scan shows on the walls, or on top of them: walls are seen at a flat angle, their upper sides and
-/// rims are not.
-double height_of(const Candidate& candidate, std::span<const cloud::Point> points) {
-  const std::size_t stride = points.size() / kBinSample + 1;
-  std::vector<double> on_walls, on_top;
-  const auto collect = [&](const auto& add) {
-    for (std::size_t i = 0; i < points.size(); i += stride) {
-      if (!cloud::is_finite(points[i])) continue;
-      const Vec3 p = points[i].cast<double>();
-      for (const FlatRegion* wall : candidate.walls)
-        if (wall->spans(p, kOverhang)) add(*wall, p, candidate.floor->plane.height(p));
+/// The walls at +x, -x, +y, -y; null where they are hidden.
+using Walls = std::array<const FlatRegion*, 4>;
+
+/// The bins that stand on one region.
+class BinsOnFloor {
+ public:
+  BinsOnFloor(const FlatRegion& floor, const Background& background, std::span<const cloud::Point> points)
+      : floor_(floor), up_(floor.plane.normal), spacing_(background.spacing), points_(points) {
+    for (const FlatRegion& region : background.regions)
+      if (std::abs(region.plane.normal.dot(up_)) < kLean && floor.plane.height(region.center) > 0.0)
+        standing_.push_back(&region);
+    if (standing_.size() < 2) return;
+    for_sample(kSample, [&](const Vec3& p) { sample_.push_back(p); });
+  }
+
+  std::vector<BinFound> find() const {
+    std::vector<BinFound> bins;
+    std::vector<const FlatRegion*> used;
+    for (const FlatRegion* wall : standing_) {
+      if (std::ranges::find(used, wall) != used.end()) continue;
+      Walls walls{};
+      if (const auto bin = bin_before(*wall, walls)) {
+        bins.push_back(*bin);
+        used.insert(used.end(), walls.begin(), walls.end());
+      }
     }
-  };
-  collect([&](const FlatRegion& wall, const Vec3& p, double height) {
-    if (wall.holds(p, 0.0)) on_walls.push_back(height);
+    return bins;
+  }
+
+ private:
+  void for_sample(std::size_t size, const auto& use) const {
+    const std::size_t stride = points_.size() / size + 1;
+    for (std::size_t i = 0; i < points_.size(); i += stride)
+      if (cloud::is_finite(points_[i])) use(points_[i].cast<double>());
+  }
+
+  double height(const Vec3& p) const { return floor_.plane.height(p); }
+
+  std::array<Vec3, 4> directions(const Vec3& x) const { return {x, -x, up_.cross(x), x.cross(up_)}; }
+
+  /// The nearest wall that stands along a direction from the place and looks back at it.
+  const FlatRegion* nearest_wall(const Vec3& place, const Vec3& outward) const {
+    const FlatRegion* nearest = nullptr;
+    const Vec3 along = up_.cross(outward);
+    for (const FlatRegion* wall : standing_)
+      if (wall->plane.height(place) > 0.0 && outward_of(*wall, up_).dot(outward) > kAlong &&
+          std::abs((place - wall->center).dot(along)) < half_extent(*wall, along) + 4.0 * kOverhang &&
+          (!nearest || distance_to(*wall, place, outward) < distance_to(*nearest, place, outward)))
+        nearest = wall;
+    return nearest;
+  }
+
+  /// The bin of which the wall is one.
+  std::optional<BinFound> bin_before(const FlatRegion& wall, Walls& walls) const {
+    const Vec3 first = outward_of(wall, up_);
+    const Vec3 place = wall.center - height(wall.center) * up_ - 2.0 * kOverhang * first;
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k < 4; ++k) {
+      walls[k] = nearest_wall(place, directions(first)[k]);
+      if (walls[k] == nullptr) continue;
+      // The walls' mean direction, of a frame with right angles.
+      const Vec3 outward = outward_of(*walls[k], up_);
+      sum += std::array<Vec3, 4>{outward, -outward, outward.cross(up_), up_.cross(outward)}[k];
+    }
+    if ((!walls[0] && !walls[1]) || (!walls[2] && !walls[3])) return std::nullopt;
+    const Vec3 x = sum.normalized();
+    const double top = height_of(walls);
+    std::array<double, 4> distances{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Vec3 outward = directions(x)[k];
+      const auto distance = walls[k] ? std::optional(distance_to(*walls[k], place, outward))
+                                     : distance_to_rim(*walls[k ^ 1], place, outward, top);
+      if (!distance) return std::nullopt;
+      distances[k] = *distance;
+    }
+    const BinFound bin = bin_about(place, x, distances, top);
+    return floor_fills(bin) ? std::optional(bin) : std::nullopt;
+  }
+
+  BinFound bin_about(const Vec3& place, Vec3 x, std::array<double, 4> distances, double top) const {
+    if (distances[0] + distances[1] < distances[2] + distances[3]) {
+      distances = {distances[2], distances[3], distances[1], distances[0]};
+      x = up_.cross(x);
+    }
+    const Vec3 y = up_.cross(x);
+    BinFound bin{.world_from_bin = Pose::Identity(),
+                 .length = distances[0] + distances[1],
+                 .width = distances[2] + distances[3],
+                 .height = top};
+    bin.world_from_bin.linear() << x, y, up_;
+    bin.world_from_bin.translation() = place - height(place) * up_ + (distances[0] - bin.length / 2.0) * x +
+                                       (distances[2] - bin.width / 2.0) * y;
+    return bin;
+  }
+
+  /// A table reaches beyond what stands on it, and between two bins it is seen below their floors.
+  bool floor_fills(const BinFound& bin) const {
+    const Pose bin_from_world = bin.world_from_bin.inverse();
+    const Eigen::Array2d half(bin.length / 2.0, bin.width / 2.0);
+    std::size_t inside = 0, others = 0;
+    for (const Vec3& p : sample_) {
+      if (height(p) > floor_.tolerance) continue;
+      const Eigen::Array2d outside = (bin_from_world * p).head<2>().array().abs() - half;
+      const bool is_beside = (outside > kThickestWall).any() && (outside < 2.0 * kThickestWall).all();
+      if ((outside < 0.0).all()) ++(height(p) > -floor_.tolerance ? inside : others);
+      else if (is_beside && height(p) > -floor_.tolerance) ++others;
+    }
+    return 10 * others < inside;
+  }
+
+  /// The level that most points on top of the walls lie at; where none is seen, as high as the walls are. Walls are seen at
+  /// a flat angle, and their upper sides are not.
+  double height_of(const Walls& walls) const {
+    std::vector<double> on_walls, on_top;
+    for (const Vec3& p : sample_)
+      for (const FlatRegion* wall : walls) {
+        if (wall == nullptr || !wall->spans(p, kOverhang)) continue;
+        const double behind = -wall->plane.height(p);
+        if (wall->holds(p, 0.0)) on_walls.push_back(height(p));
+        else if (behind > wall->tolerance && behind < kThickestWall) on_top.push_back(height(p));
+      }
+    if (on_walls.empty()) return 0.0;
+    const double highest = quantile(on_walls, 0.98), step = 2.0 * spacing_;
+    std::map<long, std::vector<double>> levels;
+    for (const double h : on_top)
+      if (h > highest - kOverhang) levels[std::lround(h / step)].push_back(h);
+    const auto commonest = std::ranges::max_element(levels, {}, [](const auto& level) { return level.second.size(); });
+    return levels.empty() || commonest->second.size() < 20 ? highest : quantile(commonest->second, 0.5);
+  }
+
+  /// From a place to the wall across from another one, of which the scan shows the upper side alone: the nearest line of
+  /// points at that height which goes along most of the wall.
+  std::optional<double> distance_to_rim(const FlatRegion& opposite, const Vec3& place, const Vec3& outward,
+                                        double top) const {
+    constexpr double kFarthest = 3.0, kPart = 0.5;  // metres; of the wall's length
+    const double step = 2.0 * spacing_, along_step = 3.0 * step;
+    const Vec3 along = up_.cross(outward);
+    const double half = 0.9 * half_extent(opposite, along);
+    const auto columns = static_cast<std::size_t>(2.0 * half / along_step) + 1;
+    const auto rows = static_cast<std::size_t>(kFarthest / step);
+    std::vector<bool> is_seen(rows * columns, false);
+    for_sample(kDenseSample, [&](const Vec3& p) {
+      if (std::abs(height(p) - top) > kOverhang / 4.0) return;
+      const double distance = (p - place).dot(outward), aside = (p - opposite.center).dot(along) + half;
+      if (distance < 0.0 || distance >= kFarthest || aside < 0.0 || aside >= 2.0 * half) return;
+      is_seen[static_cast<std::size_t>(distance / step) * columns + static_cast<std::size_t>(aside / along_step)] = true;
+    });
+    for (std::size_t row = 0; row < rows; ++row) {
+      const auto first = is_seen.begin() + static_cast<std::ptrdiff_t>(row * columns);
+      const auto count = std::count(first, first + static_cast<std::ptrdiff_t>(columns), true);
+      if (static_cast<double>(count) < kPart * static_cast<double>(columns)) continue;
+      // It leans as the wall across from it does.
+      const double lean = opposite.plane.normal.dot(up_) / std::abs(opposite.plane.normal.dot(outward));
+      return (static_cast<double>(row) + 0.5) * step - top * lean;
+    }
+    return std::nullopt;
+  }
+
+  const FlatRegion& floor_;
+  const Vec3& up_;
+  double spacing_;
+  std::span<const cloud::Point> points_;
+  std::vector<const FlatRegion*> standing_;
+  std::vector<Vec3> sample_;  ///< of the points
+};
+
+std::ptrdiff_t points_in(const BinFound& bin, const Background& background, std::span<const cloud::Point> points) {
+  const Pose bin_from_world = bin.world_from_bin.inverse();
+  return std::ranges::count_if(background.foreground, [&](std::uint32_t i) {
+    const Vec3 own = bin_from_world * points[i].cast<double>();
+    return std::abs(own.x()) < bin.length / 2.0 && std::abs(own.y()) < bin.width / 2.0 && own.z() > 0.0;
   });
-  if (on_walls.empty()) return 0.0;
-  const double top_of_walls = quantile(on_walls, 0.98);
-  collect([&](const FlatRegion& wall, const Vec3& p, double height) {
-    const double behind = -wall.plane.height(p);
-    if (behind > wall.tolerance && behind < kThickestWall && std::abs(height - top_of_walls) < kOverhang)
-      on_top.push_back(height);
-  });
-  return on_top.size() < 20 ? top_of_walls : quantile(on_top, 0.6);
 }
 
 }  // namespace
 
-std::optional<BinFound> find_bin(const std::vector<FlatRegion>& regions, std::span<const cloud::Point> points,
-                                 std::span<const std::uint32_t> inside) {
-  std::optional<Candidate> best;
+std::optional<BinFound> find_bin(const Background& background, const Vec3& up, std::span<const cloud::Point> points) {
+  std::optional<BinFound> best;
   std::ptrdiff_t most = -1;
-  for (const FlatRegion& floor : regions) {
-    const auto candidate = bin_on(floor, regions);
-    if (!candidate) continue;
-    const std::ptrdiff_t count = std::ranges::count_if(
-        inside, [&](std::uint32_t i) { return candidate->is_above_floor(points[i].cast<double>()); });
-    if (count <= most) continue;
-    most = count;
-    best = candidate;
+  for (const FlatRegion& floor : background.regions) {
+    if (floor.plane.normal.dot(up) < kAlong) continue;
+    for (const BinFound& bin : BinsOnFloor(floor, background, points).find()) {
+      const std::ptrdiff_t count = points_in(bin, background, points);
+      if (count <= most) continue;
+      most = count;
+      best = bin;
+    }
   }
-  if (!best) return std::nullopt;
-  best->bin.height = height_of(*best, points);
-  return best->bin;
+  return best;
 }
 
 }  // namespace tubebin::modeling

@@ -3,16 +3,15 @@
 
 #include <optional>
 #include <span>
-#include <vector>
 
-#include "modeling/input/flat_regions.hpp"
+#include "modeling/input/background.hpp"
 #include "tubebin/modeling/pipeline.hpp"
 
 namespace tubebin::modeling {
 
-/// The bin whose floor and four walls are among the regions; of several, that with the most of the points at `inside`
-/// (indices) in it. Walls may lean by 15 degrees. None where floor or a wall is out of sight.
-std::optional<BinFound> find_bin(const std::vector<FlatRegion>& regions, std::span<const cloud::Point> points,
-                                 std::span<const std::uint32_t> inside);
+/// The bin whose floor and walls are among the background's regions; of several, that with the most of the foreground's
+/// points in it. Walls may lean by 15 degrees. Of two opposite walls one may be hidden, if its upper side is seen. None
+/// where floor or other walls are out of sight. `up`: unit, against gravity. `points`: those of the scan.
+std::optional<BinFound> find_bin(const Background& background, const Vec3& up, std::span<const cloud::Point> points);
 
 }  // namespace tubebin::modeling
