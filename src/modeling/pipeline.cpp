@@ -182,6 +182,22 @@ void crop(Background& background, const ModelingInput& input, const ModelingOpti
   std::erase_if(background.foreground, [&](std::uint32_t i) { return !box.contains(input.points[i].cast<double>()); });
 }
 
+/// The upper sides of walls are mostly too narrow to be flat regions, and tubes lie on them: only what is on a tube's
+/// surface is the tube's.
+void label_rim(const BinFound& bin, const std::vector<cloud::Point>& points, const Background& background,
+               ModelingResult& result) {
+  const double tolerance = 5.0 * background.noise + background.spacing / 2.0;
+  std::vector<std::size_t> places;
+  std::vector<cloud::Point> on_rim;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (is_on_rim(bin, points[i].cast<double>(), tolerance)) {
+      places.push_back(i);
+      on_rim.push_back(points[i]);
+    }
+  const auto labels = label_set_aside(on_rim, result.tubes, std::max(background.noise, result.noise / 2.0));
+  for (std::size_t k = 0; k < places.size(); ++k) result.labels[places[k]] = labels[k];
+}
+
 /// Labels of the filtered points, and of those that a plane took from a tube.
 void label(const ModelingInput& input, const Background& background, FilteredCloud& cloud,
            const ModelingOptions& options, ModelingResult& result) {
@@ -189,6 +205,7 @@ void label(const ModelingInput& input, const Background& background, FilteredClo
   result.noise = labels.noise;
   result.labels = std::move(labels.labels);
   result.source = std::move(cloud.source);
+  if (result.found.bin && !input.bin) label_rim(*result.found.bin, cloud.points, background, result);
   const auto unexplained = std::ranges::count(result.labels, cloud::Label{0});
   result.found.unexplained = static_cast<double>(unexplained) / static_cast<double>(result.labels.size());
   const bool adds = options.filtering.ratio >= 1.0 && !input.bin;
@@ -281,15 +298,15 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   Background background = find_surroundings(input, projection, options.filtering);
   if (told.bin && !input.bin)
     result.found.doubts.push_back("the bin that was told is not in the cloud: is its pose right?");
-  crop(background, input, options);
-  FilteredCloud cloud = filter(input, projection, background.foreground, options.filtering, options.seed);
-  result.spacing = cloud.spacing;
   describe_scene(background, projection, options.up, result.found);
   result.found.bin = input.bin ? std::optional(BinFound{.world_from_bin = input.world_from_bin,
                                                         .length = input.bin->length,
                                                         .width = input.bin->width,
                                                         .height = input.bin->height})
                                : find_bin(background, result.found.up, input.points);
+  crop(background, input, options);
+  FilteredCloud cloud = filter(input, projection, background.foreground, options.filtering, options.seed);
+  result.spacing = cloud.spacing;
   OcclusionTest scan(input, projection, cloud.spacing * std::sqrt(options.filtering.ratio), 0.0);
   scan.add_solids(solids_of(background));
   watch.lap(result.seconds.filtering);

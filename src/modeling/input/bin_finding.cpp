@@ -227,4 +227,10 @@ std::optional<BinFound> find_bin(const Background& background, const Vec3& up, s
   return best;
 }
 
+bool is_on_rim(const BinFound& bin, const Vec3& point, double tolerance) {
+  const Vec3 own = bin.world_from_bin.inverse() * point;
+  const Eigen::Array2d outside = own.head<2>().array().abs() - Eigen::Array2d(bin.length / 2.0, bin.width / 2.0);
+  return std::abs(own.z() - bin.height) < tolerance && (outside > -tolerance).any() && (outside < kThickestWall).all();
+}
+
 }  // namespace tubebin::modeling
