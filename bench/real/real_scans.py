@@ -60,6 +60,7 @@ def draw(points, truth, full, path):
     scan = np.full((height, width, 3), 0.8)
     shown = np.where((found > 0) & (matched[found] == 0), -1, matched[found])
     panels = [shade * panel for panel in (scan, colors_of(shown), errors)]
+    path.parent.mkdir(parents=True, exist_ok=True)
     Image.fromarray((255 * np.concatenate(panels, 1)).astype(np.uint8)).save(path)
 
 

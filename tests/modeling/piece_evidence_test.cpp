@@ -66,7 +66,7 @@ TEST(PieceEvidence, StandsWhereItIsStraightAndUpright) {
 TEST(PieceEvidence, IsInsideWhereMostOfItsCentrelineIs) {
   const TubePiece bottle{.nodes = {{0, 0, 0}, {0, 0, 0.3}}, .radius = 0.06, .points = {}};
   EXPECT_TRUE(is_inside(piece_through({{0.05, 0, 0.02}, {0.045, 0.01, 0.1}, {0.05, 0, 0.25}}), bottle));
-  EXPECT_FALSE(is_inside(piece_through({{0.075, 0, 0.02}, {0.08, 0, 0.25}}), bottle));              // leans on it
+  EXPECT_FALSE(is_inside(piece_through({{0.075, 0, 0.02}, {0.08, 0, 0.25}}), bottle));             // leans on it
   EXPECT_FALSE(is_inside(piece_through({{0.05, 0, 0.1}, {0.2, 0, 0.1}, {0.3, 0, 0.1}}), bottle));  // ends at it
 }
 

@@ -126,8 +126,8 @@ class BinsOnFloor {
                  .width = distances[2] + distances[3],
                  .height = top};
     bin.world_from_bin.linear() << x, y, up_;
-    bin.world_from_bin.translation() = place - height(place) * up_ + (distances[0] - bin.length / 2.0) * x +
-                                       (distances[2] - bin.width / 2.0) * y;
+    bin.world_from_bin.translation() =
+        place - height(place) * up_ + (distances[0] - bin.length / 2.0) * x + (distances[2] - bin.width / 2.0) * y;
     return bin;
   }
 
@@ -181,7 +181,8 @@ class BinsOnFloor {
       if (std::abs(height(p) - top) > kOverhang / 4.0) return;
       const double distance = (p - place).dot(outward), aside = (p - opposite.center).dot(along) + half;
       if (distance < 0.0 || distance >= kFarthest || aside < 0.0 || aside >= 2.0 * half) return;
-      is_seen[static_cast<std::size_t>(distance / step) * columns + static_cast<std::size_t>(aside / along_step)] = true;
+      is_seen[static_cast<std::size_t>(distance / step) * columns + static_cast<std::size_t>(aside / along_step)] =
+          true;
     });
     for (std::size_t row = 0; row < rows; ++row) {
       const auto first = is_seen.begin() + static_cast<std::ptrdiff_t>(row * columns);
