@@ -73,8 +73,10 @@ class CylinderGrid {
     }
     // Cubes about as wide as a tube hold few cylinders each; no more of them than a few per point of a large cloud.
     constexpr float kMostCubes = 1 << 21;
-    cube_ = std::max(widest, std::cbrt(box_.volume() / kMostCubes));
-    size_ = ((box_.sizes() / cube_).array().floor().cast<int>() + 1);
+    const auto cubes_along = [&] { return Eigen::Array3f((box_.sizes() / cube_).array().floor() + 1.0f); };
+    cube_ = widest;
+    while (cubes_along().prod() > kMostCubes) cube_ *= 1.25f;
+    size_ = cubes_along().cast<int>();
     const auto cubes = static_cast<std::size_t>(size_.prod());
     std::vector<std::pair<std::uint32_t, std::uint32_t>> entries;  // cube, cylinder
     std::vector<std::uint32_t> last_entered(cubes, UINT32_MAX);

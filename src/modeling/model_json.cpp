@@ -13,9 +13,6 @@ namespace {
 
 using Json = OrderedJson;
 
-/// To a tenth of a micrometre: below what a scanner tells, and short in the file.
-double rounded(double metres) { return std::round(metres * 1e7) / 1e7; }
-
 double rounded_nats(double nats) { return std::round(nats * 10.0) / 10.0; }
 
 Json place(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }

@@ -198,9 +198,39 @@ void label_rim(const BinFound& bin, const std::vector<cloud::Point>& points, con
   for (std::size_t k = 0; k < places.size(); ++k) result.labels[places[k]] = labels[k];
 }
 
+/// A scene after step 1.
+struct FilteredScene {
+  std::vector<cloud::Point> measured;  ///< that `input` views; none: it views the points that were told
+  ModelingInput input;                 ///< with viewpoint and bin as the cloud shows them
+  SceneFound found;                    ///< but for what labels tell
+  ViewProjection projection;
+  Background background;
+  FilteredCloud cloud;
+};
+
+FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& options) {
+  ModelingInput input = told;
+  std::vector<cloud::Point> measured = without_zero_points(told.points);
+  if (!measured.empty()) input.points = measured;
+  SceneFound found;
+  if (std::string doubt = check_viewpoint(input); !doubt.empty()) found.doubts.push_back(std::move(doubt));
+  const ViewProjection projection = view_of(input);
+  Background background = find_surroundings(input, projection, options.filtering);
+  if (told.bin && !input.bin) found.doubts.push_back("the bin that was told is not in the cloud: is its pose right?");
+  describe_scene(background, projection, options.up, found);
+  found.bin = input.bin ? std::optional(BinFound{.world_from_bin = input.world_from_bin,
+                                                 .length = input.bin->length,
+                                                 .width = input.bin->width,
+                                                 .height = input.bin->height})
+                        : find_bin(background, found.up, input.points);
+  crop(background, input, options);
+  FilteredCloud cloud = filter(input, projection, background.foreground, options.filtering, options.seed);
+  return {std::move(measured), std::move(input), std::move(found), projection, std::move(background), std::move(cloud)};
+}
+
 /// Labels of the filtered points, and of those that a plane took from a tube.
-void label(const ModelingInput& input, const Background& background, FilteredCloud& cloud,
-           const ModelingOptions& options, ModelingResult& result) {
+void label(FilteredScene& scene, const ModelingOptions& options, ModelingResult& result) {
+  auto& [measured, input, found, projection, background, cloud] = scene;
   PointLabels labels = label_points(cloud.points, result.tubes, background.noise);
   result.noise = labels.noise;
   result.labels = std::move(labels.labels);
@@ -290,31 +320,18 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   ModelingResult result;
   Stopwatch watch;
 
-  ModelingInput input = told;
-  const std::vector<cloud::Point> measured = without_zero_points(told.points);
-  if (!measured.empty()) input.points = measured;
-  if (std::string doubt = check_viewpoint(input); !doubt.empty()) result.found.doubts.push_back(std::move(doubt));
-  const ViewProjection projection = view_of(input);
-  Background background = find_surroundings(input, projection, options.filtering);
-  if (told.bin && !input.bin)
-    result.found.doubts.push_back("the bin that was told is not in the cloud: is its pose right?");
-  describe_scene(background, projection, options.up, result.found);
-  result.found.bin = input.bin ? std::optional(BinFound{.world_from_bin = input.world_from_bin,
-                                                        .length = input.bin->length,
-                                                        .width = input.bin->width,
-                                                        .height = input.bin->height})
-                               : find_bin(background, result.found.up, input.points);
-  crop(background, input, options);
-  FilteredCloud cloud = filter(input, projection, background.foreground, options.filtering, options.seed);
+  FilteredScene scene = filter_scene(told, options);
+  auto& [measured, input, found, projection, background, cloud] = scene;
+  result.found = found;
   result.spacing = cloud.spacing;
   OcclusionTest scan(input, projection, cloud.spacing * std::sqrt(options.filtering.ratio), 0.0);
   scan.add_solids(solids_of(background));
   watch.lap(result.seconds.filtering);
 
   const std::vector<TubeClass> classes = find_classes(cloud, projection, scan, background, result.found, options);
-  for (const TubeClass& found : classes) {
-    result.radii.push_back(found.radius);
-    result.radius_errors.push_back(found.radius_error);
+  for (const TubeClass& tube_class : classes) {
+    result.radii.push_back(tube_class.radius);
+    result.radius_errors.push_back(tube_class.radius_error);
   }
   if (!classes.empty()) result.radius = classes.front().radius;
   watch.lap(result.seconds.fitting);
@@ -327,9 +344,19 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
     result.tubes = grow_tubes(cloud, projection, result.radius, options, result.seconds, watch);
   }
 
-  label(input, background, cloud, options, result);
+  round_tubes(result.tubes);
+  label(scene, options, result);
   add_doubts(result);
   watch.lap(result.seconds.labeling);
+  return result;
+}
+
+ModelingResult label_tubes(const ModelingInput& told, std::vector<TubeModel> tubes, const ModelingOptions& options) {
+  ModelingResult result;
+  result.tubes = std::move(tubes);
+  FilteredScene scene = filter_scene(told, options);
+  result.found = scene.found;
+  label(scene, options, result);
   return result;
 }
 

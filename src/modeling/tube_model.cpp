@@ -5,6 +5,16 @@
 
 namespace tubebin::modeling {
 
+double rounded(double metres) { return std::round(metres * 1e7) / 1e7; }
+
+void round_tubes(std::vector<TubeModel>& tubes) {
+  for (TubeModel& tube : tubes) {
+    tube.radius = rounded(tube.radius);
+    for (TubePath& path : tube.paths)
+      for (Vec3& node : path.nodes) node = node.unaryExpr(&rounded);
+  }
+}
+
 double polyline_length(const std::vector<Vec3>& nodes) {
   double sum = 0.0;
   for (std::size_t i = 1; i < nodes.size(); ++i) sum += (nodes[i] - nodes[i - 1]).norm();

@@ -13,8 +13,8 @@ namespace tubebin::results {
 namespace {
 
 /// The options that model.json says the run had.
-ModelConfig read_run_config(const std::string& path) {
-  const nlohmann::json json = parse_json(read_file(path), path);
+ModelConfig parse_run_config(const std::string& text, const std::string& path) {
+  const nlohmann::json json = parse_json(text, path);
   ModelConfig config;
   JsonPlace(json, path).at("options").fields([&](Fields& fields) { describe(fields, config); });
   return config;
@@ -53,36 +53,46 @@ std::optional<evaluation::LabelledPoints> kept_points(const evaluation::RunScore
   return result;
 }
 
-double micro_recall(const evaluation::LabelledPoints& points) {
-  return evaluation::match_segments(evaluation::count_pairs(points.truth, points.predicted, 0)).micro_recall();
+evaluation::LabelledPoints with_truth(const CloudToModel& input, const modeling::ModelingResult& result, double ratio) {
+  evaluation::LabelledPoints points;
+  points.scanner = input.scene->scene.scanner;
+  points.true_tubes = evaluation::tube_lines(input.scene->scene);
+  points.ratio = ratio;
+  points.predicted = result.labels;
+  for (const std::uint32_t source : result.source) {
+    points.points.push_back(input.cloud.points[source]);
+    points.truth.push_back(input.cloud.labels[source]);
+  }
+  return points;
 }
 
-std::optional<evaluation::LabelledPoints> model_again(const evaluation::RunScore& run) {
+/// From the tubes in model.json, or from modelling again, whichever gives the labels that result.json counted.
+std::optional<evaluation::LabelledPoints> label_again(const evaluation::RunScore& run) {
   if (run.folder.empty()) return std::nullopt;
   const scene::DatasetFiles files(run.dataset);
   const CloudFile cloud{run.key.scene, files.cloud_of(run.key.scene)};
   if (cloud.file.empty()) return std::nullopt;
   const CloudToModel input = read_cloud_to_model(files, cloud);
   if (input.cloud.labels.empty() || !input.scene) return std::nullopt;
-  const modeling::ModelingResult result = model_cloud(input, read_run_config(run.folder + "/model.json"));
-  evaluation::LabelledPoints points;
-  points.scanner = input.scene->scene.scanner;
-  points.true_tubes = evaluation::tube_lines(input.scene->scene);
-  points.ratio = run.key.ratio;
-  points.predicted = result.labels;
-  for (const std::uint32_t source : result.source) {
-    points.points.push_back(input.cloud.points[source]);
-    points.truth.push_back(input.cloud.labels[source]);
-  }
-  if (micro_recall(points) != run.micro_recall) return std::nullopt;
-  return points;
+
+  const std::string model_path = run.folder + "/model.json", counts_path = run.folder + "/result.json";
+  const std::string model = read_file(model_path);
+  const ModelConfig config = parse_run_config(model, model_path);
+  const evaluation::Contingency counted = parse_run_counts(read_file(counts_path), counts_path).contingency;
+  const auto if_as_counted = [&](const modeling::ModelingResult& result) -> std::optional<evaluation::LabelledPoints> {
+    evaluation::LabelledPoints points = with_truth(input, result, run.key.ratio);
+    if (evaluation::count_pairs(points.truth, points.predicted, 0) != counted) return std::nullopt;
+    return points;
+  };
+  if (auto points = if_as_counted(label_cloud(input, config, parse_labeling_tubes(model, model_path)))) return points;
+  return if_as_counted(model_cloud(input, config));
 }
 
 }  // namespace
 
 std::optional<evaluation::LabelledPoints> labelled_points(const evaluation::RunScore& run) {
   std::optional<evaluation::LabelledPoints> points = kept_points(run);
-  if (!points && !run.dataset.empty()) points = model_again(run);
+  if (!points && !run.dataset.empty()) points = label_again(run);
   if (const std::string model = run.folder + "/model.json"; points && !run.folder.empty() && path_exists(model))
     points->found_tubes = parse_model_tubes(read_file(model), model);
   return points;

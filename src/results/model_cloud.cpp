@@ -64,6 +64,26 @@ void require_near(const CloudToModel& input) {
       input.path, far - input.cloud.points.begin(), far->x(), far->y(), far->z(), kFarthest);
 }
 
+/// `work` on the cloud's positions, its viewpoint and the bin; its errors name the file.
+template <typename Work>
+modeling::ModelingResult on_positions(const CloudToModel& input, const ModelConfig& config, const Work& work) {
+  if (std::none_of(input.cloud.points.begin(), input.cloud.points.end(), cloud::is_finite))
+    throw_io_error("{}: has no finite point", input.path);
+  require_near(input);
+  const modeling::ModelingInput positions{.points = input.cloud.points,
+                                          .world_from_sensor = choose_sensor(input, config),
+                                          .bin = choose_bin(input, config),
+                                          .world_from_bin = choose_bin_pose(config),
+                                          .width = input.cloud.height > 1 ? input.cloud.width : 0};
+  try {
+    return work(positions);
+  } catch (const IoError& error) {
+    throw IoError(input.path + ": " + error.what());
+  } catch (const std::bad_alloc&) {
+    throw_io_error("{}: modelling its {} points takes more memory than there is", input.path, input.cloud.size());
+  }
+}
+
 cloud::Cloud unorganized(const cloud::Cloud& input, std::size_t size) {
   cloud::Cloud cloud;
   cloud.width = static_cast<std::uint32_t>(size);
@@ -131,21 +151,16 @@ CloudToModel read_cloud_to_model(const scene::DatasetFiles& files, const CloudFi
 }
 
 modeling::ModelingResult model_cloud(const CloudToModel& input, const ModelConfig& config) {
-  if (std::none_of(input.cloud.points.begin(), input.cloud.points.end(), cloud::is_finite))
-    throw_io_error("{}: has no finite point", input.path);
-  require_near(input);
-  const modeling::ModelingInput positions{.points = input.cloud.points,
-                                          .world_from_sensor = choose_sensor(input, config),
-                                          .bin = choose_bin(input, config),
-                                          .world_from_bin = choose_bin_pose(config),
-                                          .width = input.cloud.height > 1 ? input.cloud.width : 0};
-  try {
+  return on_positions(input, config, [&](const modeling::ModelingInput& positions) {
     return modeling::model_tubes(positions, config.modeling);
-  } catch (const IoError& error) {
-    throw IoError(input.path + ": " + error.what());
-  } catch (const std::bad_alloc&) {
-    throw_io_error("{}: modelling its {} points takes more memory than there is", input.path, input.cloud.size());
-  }
+  });
+}
+
+modeling::ModelingResult label_cloud(const CloudToModel& input, const ModelConfig& config,
+                                     std::vector<modeling::TubeModel> tubes) {
+  return on_positions(input, config, [&](const modeling::ModelingInput& positions) {
+    return modeling::label_tubes(positions, std::move(tubes), config.modeling);
+  });
 }
 
 cloud::Cloud filtered_cloud(const cloud::Cloud& input, const modeling::ModelingResult& result) {

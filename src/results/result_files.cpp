@@ -19,6 +19,7 @@ constexpr std::uint64_t kMaxLabel = std::numeric_limits<std::uint32_t>::max();
 constexpr Limits kCoordinate = {-1000.0, 1000.0};
 constexpr double kMaxModelLength = 10'000.0;
 constexpr Limits kRadius = {0.0, 1000.0};
+constexpr Limits kLabelingRadius = {1e-6, 1000.0};  // a surface has one
 constexpr Limits kSeconds = {0.0, 1e9};
 
 void check_format(const JsonPlace& root, const char* expected) {
@@ -61,6 +62,12 @@ evaluation::Contingency read_contingency(const JsonPlace& root, const std::strin
   return contingency;
 }
 
+void check_length(double length, const std::string& name) {
+  if (length > kMaxModelLength)
+    throw_io_error("{}: /tubes: their cylinders are {} m long together; valid: up to {} m", name, length,
+                   kMaxModelLength);
+}
+
 /// Of a tube, or of a bridge in it: the least counts.
 void add_log_odds(const JsonPlace& part, const char* key, evaluation::TubeLine& tube) {
   if (!part.has(key)) return;
@@ -100,10 +107,30 @@ std::vector<evaluation::TubeLine> parse_model_tubes(std::string_view text, const
     }
     model.push_back(std::move(line));
   }
-  if (length > kMaxModelLength)
-    throw_io_error("{}: /tubes: their cylinders are {} m long together; valid: up to {} m", name, length,
-                   kMaxModelLength);
+  check_length(length, name);
   return model;
+}
+
+std::vector<modeling::TubeModel> parse_labeling_tubes(std::string_view text, const std::string& name) {
+  const nlohmann::json json = parse_json(text, name);
+  std::vector<modeling::TubeModel> tubes;
+  double length = 0.0;
+  for (const JsonPlace& place : JsonPlace(json, name).at("tubes").elements()) {
+    modeling::TubeModel tube{.paths = {}, .radius = place.at("radius").number(kLabelingRadius)};
+    std::uint64_t last_path = 0;
+    for (const JsonPlace& cylinder : place.at("cylinders").elements()) {
+      const std::uint64_t path = cylinder.at("path").whole(0, kMaxPoints);
+      if (tube.paths.empty() || path != last_path)
+        tube.paths.push_back({.nodes = {cylinder.at("start").vector(kCoordinate)}, .bridged = {}});
+      last_path = path;
+      tube.paths.back().nodes.push_back(cylinder.at("end").vector(kCoordinate));
+      tube.paths.back().bridged.push_back(cylinder.at("bridged").flag());
+    }
+    length += tube.length();
+    tubes.push_back(std::move(tube));
+  }
+  check_length(length, name);
+  return tubes;
 }
 
 double parse_modeling_seconds(std::string_view text, const std::string& name) {

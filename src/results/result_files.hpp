@@ -9,6 +9,7 @@
 
 #include "tubebin/evaluation/centerline.hpp"
 #include "tubebin/evaluation/contingency.hpp"
+#include "tubebin/modeling/tube_model.hpp"
 #include "tubebin/scene/input_hashes.hpp"
 
 namespace tubebin::results {
@@ -27,6 +28,8 @@ struct RunCounts {
 RunCounts parse_run_counts(std::string_view text, const std::string& name);
 /// model.json: the axis of each tube.
 std::vector<evaluation::TubeLine> parse_model_tubes(std::string_view text, const std::string& name);
+/// model.json: what of the tubes their points' labels follow from.
+std::vector<modeling::TubeModel> parse_labeling_tubes(std::string_view text, const std::string& name);
 /// times.json: the modelling time, seconds.
 double parse_modeling_seconds(std::string_view text, const std::string& name);
 /// failures.jsonl: reasons by run folder.

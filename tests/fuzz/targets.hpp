@@ -107,10 +107,18 @@ inline const evaluation::SceneTruth& two_tubes() {
 
 inline bool is_share(double value) { return value >= 0.0 && value <= 1.0; }
 
+inline void parse_labeling_tubes(std::string_view model) {
+  try {
+    results::parse_labeling_tubes(model, "fuzz model");
+  } catch (const IoError&) {
+  }
+}
+
 /// result.json, a line "---" and model.json, which are scored as `evaluate` does.
 inline void run(std::string_view bytes) {
   constexpr std::string_view kDivider = "\n---\n";
   const std::size_t divider = bytes.find(kDivider);
+  if (divider != std::string_view::npos) parse_labeling_tubes(bytes.substr(divider + kDivider.size()));
   evaluation::RunScore score;
   try {
     const results::RunCounts counts = results::parse_run_counts(bytes.substr(0, divider), "fuzz result");

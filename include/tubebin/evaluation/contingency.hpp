@@ -34,6 +34,7 @@ struct Contingency {
   }
   std::int64_t total() const;
   bool is_bin(std::size_t row) const { return bin_id && truth_ids[row] == *bin_id; }
+  bool operator==(const Contingency&) const = default;
 };
 
 /// Throws IoError where there are so many different ids that they can't be segments; `name` is of the file, if any.

@@ -98,4 +98,8 @@ std::string describe_found(const ModelingResult& result);
 
 ModelingResult model_tubes(const ModelingInput& input, const ModelingOptions& options);
 
+/// Steps 1 and 5 alone: the filtered points with the labels of tubes that are known. Of the result, `source`, `labels`,
+/// `tubes` and `noise` are as model_tubes gives them where it finds these tubes.
+ModelingResult label_tubes(const ModelingInput& input, std::vector<TubeModel> tubes, const ModelingOptions& options);
+
 }  // namespace tubebin::modeling

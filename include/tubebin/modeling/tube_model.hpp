@@ -45,6 +45,12 @@ struct TubeModel {
   std::size_t cylinder_count() const;
 };
 
+/// A length or coordinate as model.json has it: to a tenth of a micrometre, below what a scanner tells, and short.
+double rounded(double metres);
+
+/// Nodes and radii as model.json has them, so that labels follow from the file.
+void round_tubes(std::vector<TubeModel>& tubes);
+
 /// Sum of the distances of consecutive nodes, metres.
 double polyline_length(const std::vector<Vec3>& nodes);
 

@@ -7,10 +7,10 @@
 
 namespace tubebin::results {
 
-/// From the run's clouds where they were kept, else modelled again with the run's own options and seed, which
-/// gives the same labels. Nothing where neither is possible, or where modelling again gives another
-/// micro-recall, as another version of the program may. Throws IoError where a file of the run or of its data
-/// set is damaged.
+/// From the run's clouds where they were kept, else the same points, labelled by the tubes in model.json, or, where that
+/// does not give the counts in result.json, modelled again with the run's own options and seed. Nothing where none of these
+/// is possible, or where modelling again gives other counts, as another version of the program may. Throws IoError where a
+/// file of the run or of its data set is damaged.
 std::optional<evaluation::LabelledPoints> labelled_points(const evaluation::RunScore& run);
 
 }  // namespace tubebin::results

@@ -50,6 +50,10 @@ CloudToModel read_cloud_to_model(const scene::DatasetFiles& files, const CloudFi
 /// Models the cloud: its positions, its viewpoint and the scene's bin, nothing else of what is there. Throws IoError.
 modeling::ModelingResult model_cloud(const CloudToModel& input, const ModelConfig& config);
 
+/// Labels the cloud's filtered points by tubes that model_cloud found in it (modeling::label_tubes). Throws IoError.
+modeling::ModelingResult label_cloud(const CloudToModel& input, const ModelConfig& config,
+                                     std::vector<modeling::TubeModel> tubes);
+
 /// The filtered points as they were, colours and labels included, in the input's order.
 cloud::Cloud filtered_cloud(const cloud::Cloud& input, const modeling::ModelingResult& result);
 /// The same points in the colours (label_colors) and with the labels of the tubes found.
