@@ -10,6 +10,7 @@
 #include "modeling/fitting/centerline_pieces.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
 #include "modeling/fitting/piece_cleaning.hpp"
+#include "modeling/fitting/piece_evidence.hpp"
 #include "modeling/fitting/tube_classes.hpp"
 #include "modeling/input/background.hpp"
 #include "modeling/input/bin_finding.hpp"
@@ -47,12 +48,12 @@ std::vector<TubePiece> find_cylinder_pieces(const FilteredCloud& cloud, const st
   return pieces;
 }
 
-/// Edges and corners of other things look like a short stretch of tube, too, but of a worse surface.
-bool is_doubtful(const TubeModel& tube) {
-  constexpr double kShort = 8.0, kEvidence = 100.0;  // radii; nats
-  double evidence = 0.0;
-  for (const TubePath& path : tube.paths) evidence += path.evidence;
-  return tube.length() < kShort * tube.radius && evidence < kEvidence;
+void drop_doubtful(std::vector<TubeModel>& tubes) {
+  std::erase_if(tubes, [](const TubeModel& tube) {
+    double evidence = 0.0;
+    for (const TubePath& path : tube.paths) evidence += path.evidence;
+    return is_doubtful(tube.length(), tube.radius, evidence);
+  });
 }
 
 double length_of(const std::vector<TubePiece>& pieces) {
@@ -338,7 +339,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
 
   if (options.method == ModelingMethod::centerline) {
     result.tubes = join_classes(classes, scan, options, result);
-    if (!background.is_known) std::erase_if(result.tubes, is_doubtful);
+    if (!background.is_known) drop_doubtful(result.tubes);
     watch.lap(result.seconds.joining);
   } else if (result.radius > 0.0) {
     result.tubes = grow_tubes(cloud, projection, result.radius, options, result.seconds, watch);

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "tubebin/core/random.hpp"
@@ -147,6 +149,17 @@ TEST(LengthModel, CountsWhatIsMissingBeyondTheRoomForIt) {
   EXPECT_EQ(lengths.cost(0.2, 0.0, 0.1, true), 3.0);
   EXPECT_EQ(lengths.cost(0.7, 0.0, 0.3, true), 10.0);  // room explains nothing that is too much
   EXPECT_EQ(LengthModel{.radius = kThickness}.cost(0.2, 0.0, 0.0, false), 0.0);
+}
+
+/// A normal density of a quarter of a radius about 0.5 m, and one over 0.5 m for how far a hidden end lies, against one over
+/// 0.8 m.
+TEST(LengthModel, FavorsTheCommonLengthByTheRatioOfDensities) {
+  const LengthModel lengths{.radius = kThickness, .common = 0.5, .longest_likely = 0.8};
+  const double density = 1.0 / (std::sqrt(2.0 * std::numbers::pi) * kThickness / 4.0);
+  EXPECT_NEAR(lengths.gain(0.5, 0.0, 0.0), std::log(density / (1.0 / 0.8)), 1e-9);
+  EXPECT_NEAR(lengths.gain(0.4, 0.0, 0.2), std::log(0.8 / 0.5), 1e-9);
+  EXPECT_EQ(lengths.gain(0.4, 0.0, 0.05), 0.0);
+  EXPECT_EQ(lengths.gain(0.6, 0.0, 0.2), 0.0);
 }
 
 TEST(LengthModel, TriesTheLengthOfMostTubeFirst) {

@@ -71,6 +71,13 @@ TEST(FlatRegions, AFloorInTwoPartsIsOneAndAStepIsNone) {
   EXPECT_NEAR(parts[1].plane.offset, -0.9, 1e-4);
 }
 
+TEST(FlatRegions, NoiseNearlyAsWideAsTheSpacingHidesNoFloor) {
+  const auto regions = regions_of(picture([](double, double) { return 1.0; }, 0.8 * kStep));
+  ASSERT_EQ(regions.size(), 1u);
+  EXPECT_NEAR(regions[0].plane.offset, -1.0, 1e-4);
+  EXPECT_GT(regions[0].area, 0.9 * (400 * kStep) * (300 * kStep));
+}
+
 /// A floor of parallel cylinders: no part of it is flat, however thick they are.
 TEST(FlatRegions, TubesOfThreeToFortySpacingsAreNotFlat) {
   for (const double radius : {0.003, 0.0125, 0.025, 0.04}) {
@@ -116,6 +123,12 @@ TEST(PieceEvidence, TellsASideFromAStripOfAPlane) {
     EXPECT_NEAR(flat.curvature, 0.0, 4.0 * flat.curvature_error + 0.15);  // to second order in the angle
     EXPECT_FALSE(is_tube(flat, 0.0125, noise));
   }
+}
+
+TEST(PieceEvidence, IsNoRougherThanTheNoise) {
+  constexpr double kNoise = 0.0006;
+  EXPECT_TRUE(is_tube(evidence_of(strip(0.0125, 0.011, false, kNoise), 0.0125), 0.0125, kNoise));
+  EXPECT_FALSE(is_tube(evidence_of(strip(0.0125, 0.011, false, 5.0 * kNoise), 0.0125), 0.0125, kNoise));
 }
 
 TEST(PieceEvidence, KnowsARadiusFromAnother) {

@@ -150,10 +150,15 @@ bool has_other_radius(const PieceEvidence& evidence) {
 }
 
 bool is_tube(const PieceEvidence& evidence, double radius, double noise) {
-  if (evidence.sigma > 3.0 * noise + radius / 12.0) return false;
+  if (evidence.sigma > std::hypot(2.0 * noise, radius / 10.0)) return false;
   if (evidence.empty > 0.3 || evidence.coiled > 0.6) return false;
   // A plane has to be four standard deviations away.
   return evidence.curvature_error < 0.25 && std::abs(evidence.curvature - 1.0) < 0.15 + 2.0 * evidence.curvature_error;
+}
+
+bool is_doubtful(double length, double radius, double evidence) {
+  constexpr double kShort = 8.0, kEvidence = 100.0;  // radii; nats
+  return length < kShort * radius && evidence < kEvidence;
 }
 
 bool stands_upright(const TubePiece& piece, const Vec3& up) {

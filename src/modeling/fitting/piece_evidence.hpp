@@ -28,6 +28,9 @@ bool has_other_radius(const PieceEvidence& evidence);
 /// as the points can tell, with points on its surface and no sides that the scanner saw through.
 bool is_tube(const PieceEvidence& evidence, double radius, double noise);
 
+/// Edges and corners of other things look like a short stretch of tube, too, but of a worse surface. Metres; nats.
+bool is_doubtful(double length, double radius, double evidence);
+
 /// Whether the piece is straight and upright: tubes lie or lean, and bottles, columns and the edges of boxes stand. `up`:
 /// unit, or zero where it is not known, and nothing stands.
 bool stands_upright(const TubePiece& piece, const Vec3& up);

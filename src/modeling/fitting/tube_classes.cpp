@@ -24,8 +24,9 @@ constexpr std::size_t kMostPieces = 1500;
 /// In radii, the longest piece of a radius that is one of tubes: necks and caps of bottles and jars end before.
 constexpr double kLeastLength = 8.0;
 
-/// Of the radius. Edges and rims seem round here and there, and of no one radius.
-constexpr double kFurtherRadiusError = 0.01;
+/// In nats, of a further radius' long pieces, which then know it to 1 %. Edges and rims seem round here and there, and of
+/// no one radius.
+constexpr double kFurtherEvidence = 5000.0;
 
 void keep_surest(std::vector<TubePiece>& pieces) {
   if (pieces.size() <= kMostPieces) return;
@@ -104,9 +105,10 @@ class ClassFinder {
   }
 
   static bool is_believed(const TubeClass& found, bool is_first) {
-    const auto longest = std::ranges::max_element(found.pieces, {}, &TubePiece::length);
-    if (longest == found.pieces.end() || longest->length() < kLeastLength * found.radius) return false;
-    return is_first || found.radius_error < kFurtherRadiusError * found.radius;
+    double evidence = 0.0;
+    for (const TubePiece& piece : found.pieces)
+      if (piece.length() >= kLeastLength * found.radius) evidence += piece.evidence;
+    return evidence > (is_first ? 0.0 : kFurtherEvidence);
   }
 
   /// As the longest pieces that are tubes show it; 0 where none is.

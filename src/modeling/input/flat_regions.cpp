@@ -98,6 +98,13 @@ class Blocks {
   const RegionMoments& moments(std::size_t block) const { return moments_[block]; }
   const FittedPlane& plane(std::size_t block) const { return planes_[block]; }
   bool has_plane(std::size_t block) const { return std::isfinite(planes_[block].mean_square); }
+  /// The median of the points' standard deviations from their blocks' planes, metres; 0 without blocks.
+  double roughness() const {
+    std::vector<double> variances;
+    for (std::size_t b = 0; b < size(); ++b)
+      if (has_plane(b)) variances.push_back(planes_[b].mean_square * moments_[b].count / (moments_[b].count - 3.0));
+    return variances.empty() ? 0.0 : std::sqrt(median(variances));
+  }
   /// Metres between neighbouring points of the block, square to the view.
   double spacing(std::size_t block) const { return angle_ * (planes_[block].center - viewpoint_).norm(); }
 
@@ -355,6 +362,17 @@ FlatRegion flat_region(const Region& region, const Blocks& blocks, const Vec3& o
   return flat;
 }
 
+/// Blocks in which planes show beside the noise: where that is as wide as the spacing, larger ones.
+Blocks blocks_beyond_noise(std::span<const cloud::Point> points, const ViewProjection::Images& images, double spacing,
+                           const Vec3& origin, const Vec3& viewpoint) {
+  constexpr double kNoise = 0.4;  // spacings
+  Blocks blocks(points, images, spacing, origin, viewpoint);
+  if (blocks.roughness() < kNoise * spacing) return blocks;
+  // Within three by three points even tubes of three spacings' radius are nearly flat, and what is rough is noise.
+  const double noise = Blocks(points, images, 0.75 * spacing, origin, viewpoint).roughness();
+  return noise < kNoise * spacing ? blocks : Blocks(points, images, noise / kNoise, origin, viewpoint);
+}
+
 }  // namespace
 
 bool FlatRegion::holds(const Vec3& point, double margin) const {
@@ -371,7 +389,7 @@ std::vector<FlatRegion> find_flat_regions(const ViewProjection& projection, std:
                                           const ViewProjection::Images& images, double spacing) {
   if (points.empty()) return {};
   const Vec3 origin = points[points.size() / 2].cast<double>(), viewpoint = projection.viewpoint().cast<double>();
-  const Blocks blocks(points, images, spacing, origin, viewpoint);
+  const Blocks blocks = blocks_beyond_noise(points, images, spacing, origin, viewpoint);
   const FlatWindows windows(blocks);
   std::vector<FlatRegion> flat;
   for (const Region& region : merge_coplanar(RegionGrower(blocks, windows).grow_all(), blocks, windows)) {

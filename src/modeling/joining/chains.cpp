@@ -4,6 +4,8 @@
 #include <limits>
 #include <unordered_map>
 
+#include "modeling/fitting/piece_evidence.hpp"
+#include "modeling/joining/join_candidates.hpp"
 #include "tubebin/core/random.hpp"
 
 namespace tubebin::modeling {
@@ -94,6 +96,7 @@ class ChainSearch {
 
   /// Of the chains that hold the same pieces, no best cover needs any but the cheapest.
   void keep_if_cheapest(Chain& chain) {
+    chain.room = room_of(chain);
     chain.path.cost = chain.join_cost + length_cost(chain) + end_cost(chain.first_end) + end_cost(chain.last_end);
     const auto [entry, added] = chain_of_key_.try_emplace(chain.key, chains_.size());
     if (added) chains_.push_back(chain);
@@ -102,12 +105,18 @@ class ChainSearch {
 
   double end_cost(std::uint32_t end) const { return kHiddenEndCost * (1.0 - graph_.ends[end].seen_free); }
 
-  double length_cost(const Chain& chain) const {
+  double room_of(const Chain& chain) const {
     double room = 0.0;
     for (const std::uint32_t end : {chain.first_end, chain.last_end})
       if (graph_.ends[end].seen_free < 0.5) room += graph_.ends[end].hidden_reach + lengths_.radius;
-    return lengths_.cost(chain.length, chain.bridged, room,
-                         chain.pieces.size() == 1 && graph_.ends[chain.first_end].is_of_fragment);
+    return room;
+  }
+
+  double length_cost(const Chain& chain) const {
+    const TubePiece& first = graph_.pieces[chain.pieces.front()];
+    return lengths_.cost(
+        chain.length, chain.bridged, chain.room,
+        chain.pieces.size() == 1 && (is_fragment(first) || is_doubtful(first.length(), first.radius, first.evidence)));
   }
 
   /// No best cover needs a chain that costs no less than its two parts do when cut at one of its joins.

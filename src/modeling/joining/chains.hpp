@@ -23,6 +23,7 @@ struct Chain {
   double join_cost = 0.0;
   double length = 0.0;   ///< of pieces and bridges, metres
   double bridged = 0.0;  ///< of bridges alone, metres
+  double room = 0.0;     ///< that it may go on unseen at its ends, metres
 };
 
 /// All chains that may be in the best cover of the pieces, with their costs.

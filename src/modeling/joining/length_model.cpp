@@ -12,8 +12,8 @@ namespace {
 /// length that is not common to all), one that is longer other reasons than a wrong join (an end that is drawn out
 /// beyond a flat end): e^-10.
 constexpr double kLengthCostLimit = 10.0;
-/// A fragment that no tube explains is as likely chance as not: e^-3.
-constexpr double kFragmentCostLimit = 3.0;
+/// What may be no tube and what no tube explains is as likely chance as not: e^-3.
+constexpr double kChanceCostLimit = 3.0;
 constexpr std::size_t kPossibleLengths = 4;
 
 }  // namespace
@@ -28,17 +28,20 @@ double LengthModel::longest() const {
   return length + 5.0 * sigma(length / 4.0);
 }
 
-double LengthModel::cost(double length, double bridged, double room, bool is_fragment) const {
+double LengthModel::cost(double length, double bridged, double room, bool may_be_chance) const {
   if (common <= 0.0) return 0.0;
   const double missing = common - length;
   const double unexplained = missing < 0.0 ? missing : std::max(missing - room, 0.0);
   return std::min(0.5 * unexplained * unexplained / (sigma(bridged) * sigma(bridged)),
-                  is_fragment && missing >= 0.0 ? kFragmentCostLimit : kLengthCostLimit);
+                  may_be_chance && missing >= 0.0 ? kChanceCostLimit : kLengthCostLimit);
 }
 
-double LengthModel::gain(double length, double bridged) const {
-  if (common <= 0.0 || std::abs(length - common) > 2.0 * sigma(bridged)) return 0.0;
-  return std::log(common / (std::sqrt(2.0 * std::numbers::pi) * sigma(bridged)));
+double LengthModel::gain(double length, double bridged, double room) const {
+  if (common <= 0.0) return 0.0;
+  const double any = std::max(longest_likely, common);
+  if (std::abs(length - common) <= 2.0 * sigma(bridged))
+    return std::log(any / (std::sqrt(2.0 * std::numbers::pi) * sigma(bridged)));
+  return length < common && common < length + room ? std::log(any / common) : 0.0;
 }
 
 std::vector<double> LengthModel::possible_common(std::vector<double> seen) const {

@@ -14,13 +14,13 @@ struct LengthModel {
   /// No tube is longer, metres.
   double longest() const;
 
-  /// nats, against a tube of this length, of which so much is bridged, that may go on unseen for `room` (all metres). A
-  /// `fragment` stands alone.
-  double cost(double length, double bridged, double room, bool is_fragment) const;
+  /// nats, against a tube of this length, of which so much is bridged, that may go on unseen for `room` (all metres).
+  /// `may_be_chance`: it is of one piece, which may be no tube.
+  double cost(double length, double bridged, double room, bool may_be_chance) const;
 
-  /// nats, for a tube of the common length: one that all lengths up to it are as likely for has it but once in
-  /// length / (sqrt(2 pi) sigma).
-  double gain(double length, double bridged) const;
+  /// nats, for a tube that has the common length, or may have it unseen, against one that all lengths up to
+  /// `longest_likely` are as likely for.
+  double gain(double length, double bridged, double room) const;
 
   /// Lengths that tubes agree on, of those in sight from end to end: those of the most tube, summed up over them, first.
   std::vector<double> possible_common(std::vector<double> seen) const;

@@ -88,7 +88,7 @@ double cost_of(const Cover& cover) {
   double cost = 0.0;
   for (const Chain& chain : cover.chains) {
     cost += chain.path.cost;
-    cost -= cover.lengths.gain(chain.length, chain.bridged);
+    cost -= cover.lengths.gain(chain.length, chain.bridged, chain.room);
   }
   return cost;
 }
