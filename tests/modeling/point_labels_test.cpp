@@ -33,5 +33,20 @@ TEST(PointLabels, FurtherPointsLeaveTheTubesAsTheyAre) {
   for (std::size_t i = strays; i < further.size(); ++i) ASSERT_EQ(labels[i], 2u);
 }
 
+/// Where exactly a tube ends is less well known than how it lies: points of its side beyond the end are the tube's, and
+/// those of a floor that it lies on are not.
+TEST(PointLabels, BeyondAnEndLiesTheTubeAndNotTheFloorBeneath) {
+  const std::vector<Vec3> nodes = {{-0.1, 0, 0}, {0.1, 0, 0}};
+  std::vector<TubeModel> tubes = {model_along(nodes)};
+  std::vector<cloud::Point> points = upper_half_of(nodes).points;
+  const std::size_t seen = points.size();
+  const auto beyond = static_cast<float>(0.1 + 0.4 * kRadius), radius = static_cast<float>(kRadius);
+  points.emplace_back(beyond, 0.0f, radius);
+  for (const float side : {0.5f, 0.7f, 0.9f}) points.emplace_back(beyond, side * radius, -radius);
+  const PointLabels labels = label_points(points, tubes, 0.0);
+  EXPECT_EQ(labels.labels[seen], 1u);
+  for (std::size_t i = seen + 1; i < points.size(); ++i) EXPECT_EQ(labels.labels[i], 0u) << points[i].transpose();
+}
+
 }  // namespace
 }  // namespace tubebin::modeling

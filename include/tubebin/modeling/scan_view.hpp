@@ -71,7 +71,8 @@ class RangeImage {
     hidden,   ///< the scanner measured something nearer: what is at the point cannot be seen
     surface,  ///< the scanner measured a surface at the point, within the tolerance
     empty,    ///< the scanner saw through the point: nothing is there
-    no_data,  ///< the scanner measured nothing in this direction
+    no_data,  ///< the scanner measured nothing in this direction: nothing is in its reach, or it was left out
+    missing,  ///< the scanner measured nothing there, and all around it: it failed
     outside   ///< the scan is a picture that does not reach there
   };
   /// What the scan says about a surface at `point`.
@@ -79,12 +80,13 @@ class RangeImage {
 
  private:
   bool is_filled_up_to_borders() const;
+  void mark_gaps();
 
   ViewProjection projection_;
   float inverse_cell_;
   float u_min_ = 0.0f, v_min_ = 0.0f;
   int columns_ = 0, rows_ = 0;
-  std::vector<float> nearest_;  ///< infinity where nothing was measured
+  std::vector<float> nearest_;  ///< infinity where nothing was measured; negative infinity in gaps of a whole picture
   bool fills_picture_ = false;  ///< measured up to its borders, and so cut off there
 };
 

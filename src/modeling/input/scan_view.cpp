@@ -73,6 +73,29 @@ RangeImage::RangeImage(const ViewProjection& projection, std::span<const cloud::
     nearest = std::min(nearest, image.range);
   });
   fills_picture_ = is_filled_up_to_borders();
+  if (fills_picture_) mark_gaps();
+}
+
+/// Empty cells that no way over empty cells leads to from the border.
+void RangeImage::mark_gaps() {
+  constexpr float kEmpty = std::numeric_limits<float>::infinity(), kGap = -kEmpty;
+  for (float& nearest : nearest_)
+    if (nearest == kEmpty) nearest = kGap;
+  std::vector<std::pair<int, int>> open;  // cells to go on from: row, column
+  const auto visit = [&](int row, int column) {
+    if (row < 0 || column < 0 || row >= rows_ || column >= columns_) return;
+    float& nearest = nearest_[static_cast<std::size_t>(row * columns_ + column)];
+    if (nearest != kGap) return;
+    nearest = kEmpty;
+    open.emplace_back(row, column);
+  };
+  for (int row = 0; row < rows_; ++row) visit(row, 0), visit(row, columns_ - 1);
+  for (int column = 0; column < columns_; ++column) visit(0, column), visit(rows_ - 1, column);
+  while (!open.empty()) {
+    const auto [row, column] = open.back();
+    open.pop_back();
+    visit(row - 1, column), visit(row + 1, column), visit(row, column - 1), visit(row, column + 1);
+  }
 }
 
 bool RangeImage::is_filled_up_to_borders() const {
@@ -97,7 +120,7 @@ RangeImage::Evidence RangeImage::evidence(const cloud::Point& point, float toler
   if (!(column >= 0.0f && row >= 0.0f && column < static_cast<float>(columns_) && row < static_cast<float>(rows_)))
     return fills_picture_ ? Evidence::outside : Evidence::empty;
   const float nearest = nearest_[static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column))];
-  if (nearest == std::numeric_limits<float>::infinity()) return Evidence::no_data;
+  if (std::isinf(nearest)) return nearest > 0.0f ? Evidence::no_data : Evidence::missing;
   if (nearest < image.range - tolerance) return Evidence::hidden;
   return nearest > image.range + tolerance ? Evidence::empty : Evidence::surface;
 }

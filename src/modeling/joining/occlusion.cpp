@@ -85,6 +85,7 @@ StretchEvidence OcclusionTest::evidence_across(const Vec3& center, const Vec3& d
       case RangeImage::Evidence::no_data:
         sum.no_data += 1.0;
         break;
+      case RangeImage::Evidence::missing:
       case RangeImage::Evidence::outside:
         sum.hidden += 1.0;
         break;

@@ -13,7 +13,7 @@ namespace tubebin::modeling {
 
 /// How the places that a stretch of tube would take up look in the scan, each as a part of 1.
 struct StretchEvidence {
-  double hidden = 0.0;   ///< behind something nearer to the scanner: a tube may be there
+  double hidden = 0.0;   ///< behind something nearer to the scanner, or in a gap of the scan: a tube may be there
   double surface = 0.0;  ///< at a measured surface: a tube may be there, or what was measured is another's
   double empty = 0.0;    ///< seen through, or inside a solid: no tube is there
   double no_data = 0.0;  ///< where the scanner measured nothing at all
