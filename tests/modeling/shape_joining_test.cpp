@@ -119,6 +119,15 @@ TEST_F(ShapeJoiningUnderLid, JoinsWhatOneCopyExplains) {
   }
 }
 
+TEST_F(ShapeJoiningUnderLid, AnElbowsCopiesLeaveTheBendsOfLongerTubesInTwo) {
+  // A corner of the U with half of its middle, twice over, lies on both bends of each U; the U itself keeps them whole.
+  const Centerlines elbow = {smooth_samples({kU[0], kU[1], {0, -kMiddle / 2.0, 0}}, kRadius / 2.0, kRadius)};
+  std::vector<TubePiece> whole;
+  for (const double x : {-0.4, 0.4}) whole.push_back(piece_along(moved(kU, turned(30.0, {x, 0.3, 0}))));
+  EXPECT_DOUBLE_EQ(join_by_shapes(whole, kShapes, occlusion()).whole_bends, 1.0);
+  EXPECT_LE(join_by_shapes(whole, elbow, occlusion()).whole_bends, 0.5);
+}
+
 TEST_F(ShapeJoiningUnderLid, LeavesWhatTheScanShowsToBeElsewhere) {
   // In the open, where a corner would be seen.
   std::vector<TubePiece> pieces = without_first_corner(turned(0.0, {0.3, 0.3, 0}), 0.06);

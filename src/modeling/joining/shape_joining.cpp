@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 
 #include "modeling/joining/cover_margins.hpp"
 #include "modeling/joining/sampled_curve.hpp"
@@ -111,7 +112,6 @@ TubePath path_of(const ChosenCopy& chosen, const std::vector<Section>& sections)
     for (; next + kRadius < placed.first; next += kRadius) bridge_to(copy.pose * shape[next], odds);
     std::vector<Vec3> nodes = sections[placed.section].samples;
     if (placed.is_reversed) std::ranges::reverse(nodes);
-    // Two sections of one piece share a node.
     if (path.nodes.empty() || nodes.front() != path.nodes.back()) bridge_to(nodes.front(), odds);
     for (std::size_t k = 1; k < nodes.size(); ++k) add(nodes[k]);
     path.evidence += sections[placed.section].evidence;
@@ -120,6 +120,18 @@ TubePath path_of(const ChosenCopy& chosen, const std::vector<Section>& sections)
   if (next + kDiameter - kRadius < shape.size())
     for (; next < shape.size(); next += kRadius) bridge_to(copy.pose * shape[next], chosen.whole_odds);
   return path;
+}
+
+/// `copy_of`: of each section, the copy that it is placed in, or none.
+double whole_bends_of(const std::vector<Section>& sections, const std::vector<std::optional<std::size_t>>& copy_of) {
+  double bends = 0.0, whole = 0.0;
+  for (std::size_t k = 0; k + 1 < sections.size(); ++k) {
+    // Two sections of one piece share a node.
+    if (sections[k].samples.back() != sections[k + 1].samples.front()) continue;
+    bends += 1.0;
+    if (copy_of[k] && copy_of[k] == copy_of[k + 1]) whole += 1.0;
+  }
+  return bends > 0.0 ? whole / bends : 1.0;
 }
 
 }  // namespace
@@ -136,17 +148,18 @@ ShapeJoining join_by_shapes(const std::vector<TubePiece>& pieces, std::span<cons
     std::ranges::move(find_shape_copies(sections, shape, radius, occlusion), std::back_inserter(copies));
   const CopyCover cover = cheapest_copies(sections, copies, radius);
   result.cost = cover.cost;
-  std::vector<bool> is_placed(sections.size(), false);
+  std::vector<std::optional<std::size_t>> copy_of(sections.size());
   for (const ChosenCopy& chosen : cover.chosen) {
+    for (const PlacedSection& each : chosen.copy.placed) copy_of[each.section] = result.paths.size();
     result.paths.push_back(path_of(chosen, sections));
-    for (const PlacedSection& each : chosen.copy.placed) is_placed[each.section] = true;
   }
+  result.whole_bends = whole_bends_of(sections, copy_of);
   double all = 0.0;
   for (std::size_t k = 0; k < sections.size(); ++k) {
     const Section& section = sections[k];
     all += section.length;
     const auto explains = [&](const ChosenCopy& chosen) { return lies_on_copy(section, chosen.copy, radius); };
-    if (is_placed[k] || std::ranges::any_of(cover.chosen, explains)) {
+    if (copy_of[k] || std::ranges::any_of(cover.chosen, explains)) {
       result.explained += section.length;
     } else {
       result.rest.push_back({.nodes = section.samples, .radius = radius, .points = {}, .evidence = section.evidence});

@@ -13,6 +13,7 @@ struct ShapeJoining {
   std::vector<TubePath> paths;  ///< of the copies: what pieces show of them, and their own course between, bridged
   std::vector<TubePiece> rest;  ///< what no copy explains
   double explained = 0.0;       ///< part of the pieces' length that the copies explain
+  double whole_bends = 0.0;     ///< part of the pieces' sharp bends both sides of which are in one copy; 1 without any
   double cost = 0.0;            ///< nats: -log of the scene's likelihood, but for what is the same for any shape
   double tube_length = 0.0;     ///< of the shape, metres; 0 where there are several
 };

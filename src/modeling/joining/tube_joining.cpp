@@ -149,13 +149,14 @@ std::vector<std::vector<Vec3>> seen_tubes(const Cover& cover) {
   return tubes;
 }
 
-/// Copies of the shape that explains the scene best, where one explains three quarters of all that is seen of tubes.
+/// Copies of the shape that explains the scene best, where one explains three quarters of all that is seen of tubes, and five
+/// eighths of the sharp bends: copies of a single bend explain many tubes by halves.
 std::optional<ShapeJoining> with_common_shape(const Cover& cover, const std::vector<TubePiece>& pieces,
                                               const OcclusionTest& occlusion) {
   std::optional<ShapeJoining> best;
   for (const std::vector<Vec3>& shape : possible_shapes(seen_tubes(cover), pieces)) {
     ShapeJoining joining = join_by_shapes(pieces, {&shape, 1}, occlusion);
-    if (joining.explained < 0.75 || (best && joining.cost >= best->cost)) continue;
+    if (joining.explained < 0.75 || joining.whole_bends < 0.625 || (best && joining.cost >= best->cost)) continue;
     best = std::move(joining);
   }
   return best;
