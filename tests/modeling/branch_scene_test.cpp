@@ -36,6 +36,21 @@ TEST(Branches, OneTubeIsFoundForEachTree) {
   }
 }
 
+TEST(Branches, OneForkAmongPlainTubesIsOneTube) {
+  std::vector<scene::PlacedTube> tubes = {
+      tube_along({{-0.18, 0.03, kRadius}, {0.0, 0.03, kRadius}, {0.18, 0.03, kRadius}})};
+  tubes.front().tube.nodes.push_back({0.06, 0.13, kRadius});
+  tubes.front().tube.cylinders.push_back({1, 3, 0});
+  for (const double y : {-0.16, -0.12, -0.08, -0.04})
+    tubes.push_back(tube_along({{-0.15, y, kRadius}, {0.15, y, kRadius}}));
+  const scene::Scene scene = scene_of(tubes);
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
+  ASSERT_EQ(result.tubes.size(), tubes.size());
+  EXPECT_EQ(std::ranges::count_if(result.tubes, [](const TubeModel& tube) { return tube.paths.size() == 2; }), 1);
+  EXPECT_GE(micro_recall_of(result, cloud), 0.995);
+}
+
 TEST(Branches, ATrunkThatAnotherTubeHidesStillJoinsItsBranches) {
   const scene::Scene scene = scene_of({two_branches(0.0), two_branches(-0.15),
                                        tube_along({{-0.08, -0.02, 0.05}, {-0.04, 0.03, 0.05}, {0.12, 0.03, 0.05}})});

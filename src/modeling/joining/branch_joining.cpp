@@ -18,6 +18,9 @@ namespace {
 constexpr double kLinkCostLimit = 9.0;
 /// A tube shorter than it should be can have other reasons than a missed link: e^-10.
 constexpr double kTreeLengthCostLimit = 10.0;
+/// In radii: pieces that run into each other are cut to half a radius from the other's centreline, and the end of a tube
+/// that touches another's side is fitted to a quarter of a radius.
+constexpr double kSureLength = 0.75;
 constexpr std::size_t kTreesPerPath = 300;
 constexpr std::size_t kSearchNodeLimit = 2000;
 
@@ -49,15 +52,34 @@ class TreeJoiner {
       for (const std::uint32_t path : {links_[l].end / 2, links_[l].other}) links_of_path_[path].push_back(l);
     for (std::uint32_t p = 0; p < paths.size(); ++p) {
       keys_.push_back(derive_seed({p}));
+      is_sure_.push_back(is_sure_branch(pieces[p]));
       singles_.push_back({.paths = {p}, .key = keys_[p], .length = pieces[p].length()});
     }
   }
 
-  /// Every link that is likelier than not, cheapest first, unless its paths hang together already: a spanning forest
-  /// of least cost (Kruskal 1956).
   std::vector<Tree> likely_trees(double cost_limit) const {
+    return least_forest([&](std::uint32_t l) { return links_[l].cost < cost_limit; });
+  }
+
+  /// Of the branches that are in sight alone.
+  std::vector<Tree> sure_trees(double tube_length) const {
+    const auto is_whole = [&](std::uint32_t path) {
+      return std::abs(singles_[path].length - tube_length) <= length_sigma(1);
+    };
+    return least_forest([&](std::uint32_t l) {
+      const BranchLink& link = links_[l];
+      return !link.other_end && link.cost <= kOnSideCost && link.length <= kSureLength * radius_ &&
+             is_sure_[link.end / 2] && !is_whole(link.end / 2) && !is_whole(link.other);
+    });
+  }
+
+  /// Every link that is taken for likely, cheapest first, unless its paths hang together already: a spanning forest of
+  /// least cost (Kruskal 1956).
+  template <typename IsLikely>
+  std::vector<Tree> least_forest(const IsLikely& is_likely) const {
     std::vector<Tree> trees = singles_;
-    for (std::uint32_t l = 0; l < links_.size() && links_[l].cost < cost_limit; ++l) {
+    for (std::uint32_t l = 0; l < links_.size(); ++l) {
+      if (!is_likely(l)) continue;
       const auto holds = [](std::uint32_t path) { return [path](const Tree& tree) { return tree.holds(path); }; };
       const auto a = std::find_if(trees.begin(), trees.end(), holds(links_[l].end / 2));
       const auto b = std::find_if(trees.begin(), trees.end(), holds(links_[l].other));
@@ -213,6 +235,7 @@ class TreeJoiner {
   std::vector<BranchLink> links_;  ///< cheapest first
   std::vector<std::vector<std::uint32_t>> links_of_path_;
   std::vector<std::uint64_t> keys_;
+  std::vector<bool> is_sure_;  ///< of each path, where it meets another's side
   std::vector<Tree> singles_;  ///< each path alone
   std::vector<Tree> trees_;
   std::unordered_map<std::uint64_t, std::size_t> tree_of_key_;
@@ -241,6 +264,18 @@ std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double 
   }
   std::vector<TubeModel> tubes;
   for (const Tree& tree : trees) tubes.push_back(joiner.tube_of(tree, paths));
+  return tubes;
+}
+
+std::vector<TubeModel> join_sure_branches(const std::vector<TubePath>& paths, double radius,
+                                          const OcclusionTest& occlusion, double tube_length) {
+  if (paths.empty()) return {};
+  const TreeJoiner joiner(paths, radius, occlusion);
+  std::vector<TubeModel> tubes;
+  for (const Tree& tree : joiner.sure_trees(tube_length)) {
+    tubes.push_back(joiner.tube_of(tree, paths));
+    if (tree.paths.size() == 1) tubes.back().whole_odds = paths[tree.paths.front()].whole_odds;
+  }
   return tubes;
 }
 

@@ -114,12 +114,14 @@ std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const st
   return is_at_end ? std::nullopt : place;
 }
 
+bool is_sure_branch(const TubePiece& piece) { return piece.length() >= 4.0 * piece.radius; }
+
 bool show_branches(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends) {
   const auto whole = std::ranges::count_if(pieces, [](const TubePiece& piece) { return !is_fragment(piece); });
   std::size_t branches = 0;
   for (std::size_t end = 0; end < ends.size(); ++end)
-    branches += ends[end].is_on_side && pieces[end / 2].length() >= 4.0 * pieces.front().radius;
-  return branches >= 2 && 30 * branches >= static_cast<std::size_t>(whole);
+    branches += ends[end].is_on_side && is_sure_branch(pieces[end / 2]);
+  return branches > 0 && 30 * (branches - 1) > static_cast<std::size_t>(whole);
 }
 
 std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, const std::vector<PieceEnd>& ends,

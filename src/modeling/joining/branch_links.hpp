@@ -27,9 +27,12 @@ struct BranchLink {
 /// other path's own ends, where one may go on as the other.
 std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const std::vector<Vec3>& nodes, double radius);
 
-/// Whether pieces show that the scene's tubes branch. Where they do, one in thirty shows it, and more than one: what meets
-/// another's side is as long as two diameters, longer than the bits of surface beside bends. Of chance one in three
-/// hundred does.
+/// Whether a piece that meets another's side is surely a branch: as long as two diameters, longer than the bits of surface
+/// beside bends. Of chance one piece in some thousand does.
+bool is_sure_branch(const TubePiece& piece);
+
+/// Whether pieces show that the scene's tubes branch: but for one of them, more than one in thirty does. Where a few
+/// tubes among others do, fewer show it.
 bool show_branches(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends);
 
 /// The links that the evidence does not rule out (cost below `cost_limit`), cheapest first.
