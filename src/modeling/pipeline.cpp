@@ -62,12 +62,6 @@ double length_of(const std::vector<TubePiece>& pieces) {
   return length;
 }
 
-std::vector<TubeModel> tubes_of(Joining joining, double radius, const OcclusionTest& occlusion, double told_length) {
-  if (joining.tubes_branch) return join_branches(joining.paths, radius, occlusion, told_length);
-  if (joining.has_branches) return join_sure_branches(joining.paths, radius, occlusion, joining.tube_length);
-  return unbranched(std::move(joining.paths), radius);
-}
-
 /// Step 4 of `--method centerline`.
 std::vector<TubeModel> join_classes(const std::vector<TubeClass>& classes, const OcclusionTest& scan,
                                     const ModelingOptions& options, ModelingResult& result) {
@@ -82,7 +76,8 @@ std::vector<TubeModel> join_classes(const std::vector<TubeClass>& classes, const
     if (result.tube_length <= 0.0) result.tube_length = joining.tube_length;
     seen += length_of(found.pieces);
     explained += joining.explained * length_of(found.pieces);
-    std::ranges::move(tubes_of(std::move(joining), found.radius, occlusion, options.tube_length),
+    std::ranges::move(joining.tubes_branch ? join_branches(joining.paths, found.radius, occlusion, options.tube_length)
+                                           : join_sure_branches(joining.paths, found.radius, joining.tube_length),
                       std::back_inserter(tubes));
   }
   if (!told.empty() && explained < seen / 2.0)

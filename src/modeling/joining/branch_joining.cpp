@@ -18,9 +18,6 @@ namespace {
 constexpr double kLinkCostLimit = 9.0;
 /// A tube shorter than it should be can have other reasons than a missed link: e^-10.
 constexpr double kTreeLengthCostLimit = 10.0;
-/// In radii: pieces that run into each other are cut to half a radius from the other's centreline, and the end of a tube
-/// that touches another's side is fitted to a quarter of a radius.
-constexpr double kSureLength = 0.75;
 constexpr std::size_t kTreesPerPath = 300;
 constexpr std::size_t kSearchNodeLimit = 2000;
 
@@ -42,44 +39,23 @@ struct Tree {
 
 class TreeJoiner {
  public:
-  TreeJoiner(const std::vector<TubePath>& paths, double radius, const OcclusionTest& occlusion) : radius_(radius) {
-    std::vector<TubePiece> pieces;
-    for (const TubePath& path : paths) pieces.push_back({.nodes = path.nodes, .radius = radius, .points = {}});
-    ends_ = find_piece_ends(pieces, occlusion, 40.0 * radius);
-    links_ = find_branch_links(pieces, ends_, occlusion, kLinkCostLimit);
+  TreeJoiner(const std::vector<TubePiece>& paths, std::vector<PieceEnd> ends, std::vector<BranchLink> links,
+             double radius)
+      : radius_(radius), ends_(std::move(ends)), links_(std::move(links)) {
     links_of_path_.resize(paths.size());
     for (std::uint32_t l = 0; l < links_.size(); ++l)
       for (const std::uint32_t path : {links_[l].end / 2, links_[l].other}) links_of_path_[path].push_back(l);
     for (std::uint32_t p = 0; p < paths.size(); ++p) {
       keys_.push_back(derive_seed({p}));
-      is_sure_.push_back(is_sure_branch(pieces[p]));
-      singles_.push_back({.paths = {p}, .key = keys_[p], .length = pieces[p].length()});
+      singles_.push_back({.paths = {p}, .key = keys_[p], .length = paths[p].length()});
     }
   }
 
+  /// Every link that is likelier than not, cheapest first, unless its paths hang together already: a spanning forest
+  /// of least cost (Kruskal 1956).
   std::vector<Tree> likely_trees(double cost_limit) const {
-    return least_forest([&](std::uint32_t l) { return links_[l].cost < cost_limit; });
-  }
-
-  /// Of the branches that are in sight alone.
-  std::vector<Tree> sure_trees(double tube_length) const {
-    const auto is_whole = [&](std::uint32_t path) {
-      return std::abs(singles_[path].length - tube_length) <= length_sigma(1);
-    };
-    return least_forest([&](std::uint32_t l) {
-      const BranchLink& link = links_[l];
-      return !link.other_end && link.cost <= kOnSideCost && link.length <= kSureLength * radius_ &&
-             is_sure_[link.end / 2] && !is_whole(link.end / 2) && !is_whole(link.other);
-    });
-  }
-
-  /// Every link that is taken for likely, cheapest first, unless its paths hang together already: a spanning forest of
-  /// least cost (Kruskal 1956).
-  template <typename IsLikely>
-  std::vector<Tree> least_forest(const IsLikely& is_likely) const {
     std::vector<Tree> trees = singles_;
-    for (std::uint32_t l = 0; l < links_.size(); ++l) {
-      if (!is_likely(l)) continue;
+    for (std::uint32_t l = 0; l < links_.size() && links_[l].cost < cost_limit; ++l) {
       const auto holds = [](std::uint32_t path) { return [path](const Tree& tree) { return tree.holds(path); }; };
       const auto a = std::find_if(trees.begin(), trees.end(), holds(links_[l].end / 2));
       const auto b = std::find_if(trees.begin(), trees.end(), holds(links_[l].other));
@@ -235,19 +211,27 @@ class TreeJoiner {
   std::vector<BranchLink> links_;  ///< cheapest first
   std::vector<std::vector<std::uint32_t>> links_of_path_;
   std::vector<std::uint64_t> keys_;
-  std::vector<bool> is_sure_;  ///< of each path, where it meets another's side
   std::vector<Tree> singles_;  ///< each path alone
   std::vector<Tree> trees_;
   std::unordered_map<std::uint64_t, std::size_t> tree_of_key_;
   std::size_t budget_ = 0;
 };
 
+std::vector<TubePiece> pieces_of(const std::vector<TubePath>& paths, double radius) {
+  std::vector<TubePiece> pieces;
+  for (const TubePath& path : paths) pieces.push_back({.nodes = path.nodes, .radius = radius, .points = {}});
+  return pieces;
+}
+
 }  // namespace
 
 std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double radius, const OcclusionTest& occlusion,
                                      double tube_length) {
   if (paths.empty()) return {};
-  TreeJoiner joiner(paths, radius, occlusion);
+  const std::vector<TubePiece> pieces = pieces_of(paths, radius);
+  std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion, 40.0 * radius);
+  std::vector<BranchLink> links = find_branch_links(pieces, ends, occlusion, kLinkCostLimit);
+  TreeJoiner joiner(pieces, std::move(ends), std::move(links), radius);
   std::vector<Tree> trees;
   if (tube_length > 0.0) {
     trees = joiner.cheapest_trees(tube_length);
@@ -267,23 +251,13 @@ std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double 
   return tubes;
 }
 
-std::vector<TubeModel> join_sure_branches(const std::vector<TubePath>& paths, double radius,
-                                          const OcclusionTest& occlusion, double tube_length) {
-  if (paths.empty()) return {};
-  const TreeJoiner joiner(paths, radius, occlusion);
+std::vector<TubeModel> join_sure_branches(const std::vector<TubePath>& paths, double radius, double tube_length) {
+  const std::vector<TubePiece> pieces = pieces_of(paths, radius);
+  const TreeJoiner joiner(pieces, {}, find_sure_links(pieces, tube_length), radius);
   std::vector<TubeModel> tubes;
-  for (const Tree& tree : joiner.sure_trees(tube_length)) {
+  for (Tree& tree : joiner.likely_trees(0.0)) {
+    tree.whole_odds = CoverMargins::kMost;
     tubes.push_back(joiner.tube_of(tree, paths));
-    if (tree.paths.size() == 1) tubes.back().whole_odds = paths[tree.paths.front()].whole_odds;
-  }
-  return tubes;
-}
-
-std::vector<TubeModel> unbranched(std::vector<TubePath> paths, double radius) {
-  std::vector<TubeModel> tubes;
-  for (TubePath& path : paths) {
-    const std::optional<double> whole_odds = path.whole_odds;
-    tubes.push_back({.paths = {std::move(path)}, .radius = radius, .whole_odds = whole_odds});
   }
   return tubes;
 }

@@ -14,12 +14,8 @@ namespace tubebin::modeling {
 std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double radius, const OcclusionTest& occlusion,
                                      double tube_length);
 
-/// The same where few tubes branch: paths that surely start on another's side are branches of it, and all others tubes by
-/// themselves, as are those of the common length (`tube_length`, metres; 0: there is none).
-std::vector<TubeModel> join_sure_branches(const std::vector<TubePath>& paths, double radius,
-                                          const OcclusionTest& occlusion, double tube_length);
-
-/// One tube for each path.
-std::vector<TubeModel> unbranched(std::vector<TubePath> paths, double radius);
+/// The same where few tubes branch or none: paths that surely start on another's side (find_sure_links) are branches of it,
+/// and all others tubes by themselves.
+std::vector<TubeModel> join_sure_branches(const std::vector<TubePath>& paths, double radius, double tube_length);
 
 }  // namespace tubebin::modeling

@@ -103,6 +103,8 @@ std::optional<BranchLink> side_link(const PieceEnd& end, const TubePiece& other,
   return link->cost < cost_limit ? link : std::nullopt;
 }
 
+bool is_long(const TubePiece& piece) { return piece.length() >= 4.0 * piece.radius; }
+
 }  // namespace
 
 std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const std::vector<Vec3>& nodes, double radius) {
@@ -114,13 +116,10 @@ std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const st
   return is_at_end ? std::nullopt : place;
 }
 
-bool is_sure_branch(const TubePiece& piece) { return piece.length() >= 4.0 * piece.radius; }
-
 bool show_branches(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends) {
   const auto whole = std::ranges::count_if(pieces, [](const TubePiece& piece) { return !is_fragment(piece); });
   std::size_t branches = 0;
-  for (std::size_t end = 0; end < ends.size(); ++end)
-    branches += ends[end].is_on_side && is_sure_branch(pieces[end / 2]);
+  for (std::size_t end = 0; end < ends.size(); ++end) branches += ends[end].is_on_side && is_long(pieces[end / 2]);
   return branches > 0 && 30 * (branches - 1) > static_cast<std::size_t>(whole);
 }
 
@@ -151,6 +150,25 @@ std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, c
                      .length = polyline_length(join.bridge),
                      .cost = join.cost});
   std::sort(links.begin(), links.end(), [](const BranchLink& a, const BranchLink& b) { return a.cost < b.cost; });
+  return links;
+}
+
+std::vector<BranchLink> find_sure_links(const std::vector<TubePiece>& paths, double tube_length) {
+  // In radii: overlaps are cut to half of one, and ends fitted to a quarter.
+  constexpr double kNearest = 0.75;
+  const auto is_whole = [&](const TubePiece& path) { return std::abs(path.length() - tube_length) <= path.radius; };
+  std::vector<BranchLink> links;
+  for (std::uint32_t end = 0; end < 2 * paths.size(); ++end)
+    for (std::uint32_t other = 0; other < paths.size(); ++other) {
+      const TubePiece& path = paths[end / 2];
+      if (other == end / 2 || !is_long(path) || is_whole(path) || is_whole(paths[other])) continue;
+      const auto& n = path.nodes;
+      const Vec3 tip = end % 2 == 0 ? n.front() : n.back(), inner = end % 2 == 0 ? n[1] : n[n.size() - 2];
+      const auto place = place_on_side(tip, (tip - inner).normalized(), paths[other].nodes, path.radius);
+      if (!place || (*place - tip).norm() > kNearest * path.radius) continue;
+      links.push_back(
+          {.end = end, .other = other, .place = *place, .length = (*place - tip).norm(), .cost = kOnSideCost});
+    }
   return links;
 }
 

@@ -27,16 +27,17 @@ struct BranchLink {
 /// other path's own ends, where one may go on as the other.
 std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const std::vector<Vec3>& nodes, double radius);
 
-/// Whether a piece that meets another's side is surely a branch: as long as two diameters, longer than the bits of surface
-/// beside bends. Of chance one piece in some thousand does.
-bool is_sure_branch(const TubePiece& piece);
-
-/// Whether pieces show that the scene's tubes branch: but for one of them, more than one in thirty does. Where a few
-/// tubes among others do, fewer show it.
+/// Whether pieces show that the scene's tubes branch: but for one of them, more than one in thirty meets another's side and
+/// is as long as two diameters, longer than the bits of surface beside bends. Of chance one in some thousand does.
 bool show_branches(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends);
 
 /// The links that the evidence does not rule out (cost below `cost_limit`), cheapest first.
 std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, const std::vector<PieceEnd>& ends,
                                           const OcclusionTest& occlusion, double cost_limit);
+
+/// Of the branches that start on another's side, those that hardly anything else explains: as long as two diameters, and
+/// nearer to the other's centreline than the end of a tube that touches its side is fitted. A path as long as the tubes
+/// have in common (`tube_length`, metres; 0: none) is whole, and neither a branch nor a trunk.
+std::vector<BranchLink> find_sure_links(const std::vector<TubePiece>& paths, double tube_length);
 
 }  // namespace tubebin::modeling

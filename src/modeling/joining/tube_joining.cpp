@@ -32,16 +32,13 @@ class JoinSearch {
         bending_rate_(estimate_bending_rate(pieces, pieces.front().radius)),
         ends_(find_piece_ends(pieces, occlusion, 40.0 * pieces.front().radius)),
         tubes_branch_(show_branches(pieces, ends_)) {
-    for (std::size_t end = 0; end < ends_.size(); ++end) {
-      has_branches_ |= ends_[end].is_on_side && is_sure_branch(pieces[end / 2]);
-      if (!tubes_branch_) ends_[end].is_on_side = false;
-    }
+    if (!tubes_branch_)
+      for (PieceEnd& end : ends_) end.is_on_side = false;
     pairs_ = find_possible_joins(pieces, ends_, occlusion, bending_rate_, kJoinCostLimit);
   }
 
   const std::vector<PieceEnd>& ends() const { return ends_; }
   bool tubes_branch() const { return tubes_branch_; }
-  bool has_branches() const { return has_branches_; }
 
   PieceGraph graph(const LengthModel& lengths) const {
     return {pieces_, ends_,
@@ -65,7 +62,6 @@ class JoinSearch {
   double bending_rate_;
   std::vector<PieceEnd> ends_;
   bool tubes_branch_;
-  bool has_branches_ = false;
   std::vector<PossibleJoin> pairs_;
 };
 
@@ -187,10 +183,7 @@ Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& o
     if (auto alike = with_common_shape(cover, pieces, occlusion))
       return with_rest(std::move(*alike), occlusion, tube_length);
   }
-  return {.paths = paths_of(cover),
-          .tube_length = cover.lengths.common,
-          .tubes_branch = search.tubes_branch(),
-          .has_branches = search.has_branches()};
+  return {.paths = paths_of(cover), .tube_length = cover.lengths.common, .tubes_branch = search.tubes_branch()};
 }
 
 Joining join_pieces_by_shapes(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion,

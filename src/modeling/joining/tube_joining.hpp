@@ -11,8 +11,7 @@ namespace tubebin::modeling {
 struct Joining {
   std::vector<TubePath> paths;
   double tube_length = 0.0;   ///< metres: as given, or the common length of the scene's tubes; 0 where there is none
-  bool tubes_branch = false;  ///< enough pieces start on another's side; join_branches then makes tubes of the paths
-  bool has_branches = false;  ///< some do; join_sure_branches then does, where not enough do
+  bool tubes_branch = false;  ///< enough pieces start on another's side; join_branches then makes tubes of the paths, join_sure_branches else
   double explained = 0.0;     ///< part of the pieces' length on copies of a shape
 };
 
