@@ -5,12 +5,13 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
+#include "modeling/doubtful_tubes.hpp"
 #include "modeling/fitting/centerline_fitting.hpp"
 #include "modeling/fitting/centerline_pieces.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
 #include "modeling/fitting/piece_cleaning.hpp"
-#include "modeling/fitting/piece_evidence.hpp"
 #include "modeling/fitting/tube_classes.hpp"
 #include "modeling/input/background.hpp"
 #include "modeling/input/bin_finding.hpp"
@@ -46,14 +47,6 @@ std::vector<TubePiece> find_cylinder_pieces(const FilteredCloud& cloud, const st
     for (TubePiece& piece : fit_cylinders(cloud, segment, radius, options)) pieces.push_back(std::move(piece));
   drop_explained_pieces(pieces, cloud.points, cloud.spacing);  // a tube whose surface made two regions is found twice
   return pieces;
-}
-
-void drop_doubtful(std::vector<TubeModel>& tubes) {
-  std::erase_if(tubes, [](const TubeModel& tube) {
-    double evidence = 0.0;
-    for (const TubePath& path : tube.paths) evidence += path.evidence;
-    return is_doubtful(tube.length(), tube.radius, evidence);
-  });
 }
 
 double length_of(const std::vector<TubePiece>& pieces) {
@@ -230,9 +223,8 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
 }
 
 /// Labels of the filtered points, and of those that a plane took from a tube.
-void label(FilteredScene& scene, const ModelingOptions& options, ModelingResult& result) {
+void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& options, ModelingResult& result) {
   auto& [measured, input, found, projection, background, cloud] = scene;
-  PointLabels labels = label_points(cloud.points, result.tubes, background.noise);
   result.noise = labels.noise;
   result.labels = std::move(labels.labels);
   result.source = std::move(cloud.source);
@@ -339,14 +331,17 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
 
   if (options.method == ModelingMethod::centerline) {
     result.tubes = join_classes(classes, scan, options, result);
-    if (!background.is_known) drop_doubtful(result.tubes);
     watch.lap(result.seconds.joining);
   } else if (result.radius > 0.0) {
     result.tubes = grow_tubes(cloud, projection, result.radius, options, result.seconds, watch);
   }
 
   round_tubes(result.tubes);
-  label(scene, options, result);
+  PointLabels labels = label_points(cloud.points, result.tubes, background.noise);
+  if (!background.is_known && options.method == ModelingMethod::centerline &&
+      drop_doubtful(result.tubes, labels.labels))
+    labels = label_points(cloud.points, result.tubes, background.noise);
+  label(scene, std::move(labels), options, result);
   add_doubts(result);
   watch.lap(result.seconds.labeling);
   return result;
@@ -357,7 +352,7 @@ ModelingResult label_tubes(const ModelingInput& told, std::vector<TubeModel> tub
   result.tubes = std::move(tubes);
   FilteredScene scene = filter_scene(told, options);
   result.found = scene.found;
-  label(scene, options, result);
+  label(scene, label_points(scene.cloud.points, result.tubes, scene.background.noise), options, result);
   return result;
 }
 

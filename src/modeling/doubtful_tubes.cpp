@@ -1,0 +1,51 @@
+#include "modeling/doubtful_tubes.hpp"
+
+#include <cstddef>
+#include <map>
+
+#include "modeling/fitting/piece_evidence.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// The surface of a tube seen from the side still says a tenth of what others' do; a crease or an edge less than a
+/// fiftieth, since it is round in few places.
+constexpr double kLeastShare = 0.03;
+
+struct PointEvidence {
+  double evidence = 0.0, points = 0.0;
+};
+
+std::vector<PointEvidence> point_evidence(const std::vector<TubeModel>& tubes,
+                                          const std::vector<cloud::Label>& labels) {
+  std::vector<PointEvidence> found(tubes.size());
+  for (std::size_t t = 0; t < tubes.size(); ++t)
+    for (const TubePath& path : tubes[t].paths) found[t].evidence += path.evidence;
+  for (const cloud::Label label : labels)
+    if (label > 0) found[label - 1].points += 1.0;
+  return found;
+}
+
+}  // namespace
+
+bool drop_doubtful(std::vector<TubeModel>& tubes, const std::vector<cloud::Label>& labels) {
+  const std::vector<PointEvidence> found = point_evidence(tubes, labels);
+  std::map<double, PointEvidence> of_radius;
+  for (std::size_t t = 0; t < tubes.size(); ++t) {
+    PointEvidence& all = of_radius[tubes[t].radius];
+    all.evidence += found[t].evidence;
+    all.points += found[t].points;
+  }
+  std::vector<TubeModel> kept;
+  for (std::size_t t = 0; t < tubes.size(); ++t) {
+    const auto& [evidence, points] = found[t];
+    const PointEvidence& all = of_radius[tubes[t].radius];
+    const bool is_weak = evidence * all.points < kLeastShare * points * all.evidence;
+    if (!is_weak && !is_doubtful(tubes[t].length(), tubes[t].radius, evidence)) kept.push_back(std::move(tubes[t]));
+  }
+  const bool any = kept.size() < tubes.size();
+  tubes = std::move(kept);
+  return any;
+}
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,15 @@
+/// Tubes that may be none: edges and corners of other things look like tube here and there.
+#pragma once
+
+#include <vector>
+
+#include "tubebin/modeling/tube_model.hpp"
+
+namespace tubebin::modeling {
+
+/// Drops them: what is short and of little evidence (is_doubtful), and what has a small part of the evidence a point that
+/// all tubes of its radius have together. `labels`: of all points, 0 or 1 + the tube's place. Returns whether any was
+/// dropped; the labels are then no longer right.
+bool drop_doubtful(std::vector<TubeModel>& tubes, const std::vector<cloud::Label>& labels);
+
+}  // namespace tubebin::modeling
