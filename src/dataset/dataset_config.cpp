@@ -56,7 +56,7 @@ void check_preview(const DatasetConfig& config, const KeyPlaces& places) {
                 "'true' is not possible: OSMesa, which draws, is missing, or was when this was built");
 }
 
-void check_depth_image(const DatasetConfig& config, const KeyPlaces& places) {
+void check_depth_output(const DatasetConfig& config, const KeyPlaces& places) {
   if (!config.output.depth_image) return;
   constexpr auto kKey = "output.depth_image";
   if (!config.scanners.empty()) places.fail(kKey, "'true' is not possible with `scanners`, whose cloud is no image");
@@ -175,7 +175,7 @@ void check_numbers(const DatasetConfig& config, const KeyPlaces& places) {
   check_set_name(config, places);
   check_tubes_once(config, places);
   check_scene_count(config, places);
-  check_depth_image(config, places);
+  check_depth_output(config, places);
   if (config.kinds.empty()) check(config.tube, places, "tube");
   check(config.kinds, config.tubes, places);
   check(config.bin, places, "bin");
