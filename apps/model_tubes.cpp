@@ -230,6 +230,7 @@ bool is_dataset(const std::string& path) { return is_folder(path) || fs::path(pa
 
 results::BatchOptions batch_options(const Arguments& arguments, const results::ModelConfig& config) {
   if (arguments.scale != 1.0) throw_config_error("--scale is for single files; data sets are in metres");
+  if (arguments.full) throw_config_error("--full is for single files; --keep-clouds writes a data set's clouds");
   if (arguments.ratio && !arguments.ratios.empty()) throw_config_error("--ratio and --ratios say the same: give one");
   results::BatchOptions options;
   options.dataset = arguments.input;
@@ -277,7 +278,8 @@ int model_many(results::BatchOptions options, const results::ModelConfig& config
 int resume(const Arguments& arguments) {
   if (!arguments.config.empty() || !arguments.method.empty() || arguments.ratio || !arguments.ratios.empty() ||
       !arguments.radii.empty() || arguments.tube_length || !arguments.tube_shapes.empty() || arguments.seed ||
-      arguments.cases > 0)
+      !arguments.bin_pose.empty() || !arguments.viewpoint.empty() || !arguments.up.empty() || !arguments.crop.empty() ||
+      arguments.scale != 1.0 || arguments.full || arguments.cases > 0)
     throw_config_error("--resume takes the options of the modeller from {}/index.json", arguments.resume.front());
   const results::ResumedBatch batch = results::resume_batch(arguments.resume);
   return model_many(batch.options, batch.config, arguments);

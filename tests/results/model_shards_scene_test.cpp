@@ -85,6 +85,30 @@ TEST_F(ModelShards, AreEvaluatedFromFoldersOfTheirOwn) {
   EXPECT_THAT(mixed.error, AllOf(HasSubstr(" seed: 1 "), HasSubstr(" seed: 9 "), HasSubstr("--resume " + other)));
 }
 
+TEST_F(ModelShards, AreResumedByTheirOwnOptionsAlone) {
+  const std::string index = read_text(one_results_ + "/index.json");
+  const std::vector<std::vector<std::string>> others = {{"--radius", "0.01"},
+                                                        {"--bin-pose", "0,0,0.1,0,0,0"},
+                                                        {"--viewpoint", "0,0,2"},
+                                                        {"--up", "0,1,0"},
+                                                        {"--crop", "-1,-1,-1,1,1,1"},
+                                                        {"--scale", "0.001"},
+                                                        {"--full"}};
+  for (std::vector<std::string> arguments : others) {
+    SCOPED_TRACE(arguments.front());
+    arguments.insert(arguments.end(), {"--resume", one_results_});
+    const ProgramResult resumed = run_program("model_tubes", arguments);
+    EXPECT_EQ(resumed.exit_code, 2);
+    EXPECT_THAT(resumed.error, HasSubstr("--resume takes the options of the modeller from " + one_results_));
+  }
+  EXPECT_EQ(read_text(one_results_ + "/index.json"), index);
+  // Nor does a second call that is not told to resume mix them in, or leave out what a data set has no place for.
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"--viewpoint", "0,0,2"}, {"--up", "0,1,0"}, {"--crop", "-1,-1,-1,1,1,1"}, {"--full"}, {"--scale", "0.001"}})
+    EXPECT_EQ(model(one_machine_, one_results_, arguments).exit_code, 2) << arguments.front();
+  EXPECT_EQ(read_text(one_results_ + "/index.json"), index);
+}
+
 TEST_F(ModelShards, ReadPacksDirectly) {
   for (const char* shard : {"1/2", "2/2"}) ASSERT_EQ(generate(data_, {"--shard", shard, "--pack"}).exit_code, 0);
   ASSERT_EQ(model(data_, results_).exit_code, 0);
