@@ -80,6 +80,15 @@ def test_points_may_be_a_list_in_any_type(dataset: pathlib.Path) -> None:
     assert model.labels.shape == dense.shape[:1] and len(model.tubes) == 3
 
 
+def test_doubts_are_warnings(dataset: pathlib.Path) -> None:
+    cloud = tubebin.Dataset(dataset)["A10/001"].cloud
+    in_another_unit = 30 * cloud.points
+    with pytest.warns(tubebin.ModelWarning, match="radius") as caught:
+        model = tubebin.model(in_another_unit, 30 * cloud.viewpoint[:3, 3])
+    assert [str(warning.message) for warning in caught] == model.warnings
+    assert {pathlib.Path(warning.filename).name for warning in caught} == {"test_models.py"}
+
+
 def test_what_cannot_be_modelled_is_named() -> None:
     with pytest.raises(ValueError, match="radius: '-1.0' is not valid"):
         tubebin.model(np.zeros((5, 3)), np.zeros(3), radius=-1)

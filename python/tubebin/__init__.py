@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import operator
 import os
+import warnings
 from collections.abc import Sequence
 from typing import Any, Literal
 
@@ -43,6 +44,7 @@ __all__ = [
     "GenerationError",
     "IoError",
     "Model",
+    "ModelWarning",
     "Sample",
     "Scene",
     "Tube",
@@ -54,6 +56,10 @@ __all__ = [
     "read_cloud",
     "write_cloud",
 ]
+
+
+class ModelWarning(UserWarning):
+    """A reason not to trust a model; Model.warnings has all of them."""
 
 
 def generate(config: Config, tubes: int = 10, seed: int = 7, *, case: int = 1) -> Scene:
@@ -92,7 +98,7 @@ def model(
     Labels and tubes are those of `model_tubes`, bit by bit. Where the bin is known, say so as that program's
     configuration does: config={"bin_source": "config", "bin": {"length": 0.55, "width": 0.37, "height": 0.2}}.
 
-    Raises ConfigError, or IoError where no point is finite.
+    Raises ConfigError, or IoError where no point is finite. Warns with ModelWarning where the result may not be trusted.
     """
     request: dict[str, Any] = {}
     if radius is not None:
@@ -108,7 +114,10 @@ def model(
         request["method"] = method
     positions = np.ascontiguousarray(points, dtype=np.float32)
     pose = np.ascontiguousarray(viewpoint, dtype=np.float64)
-    return _core.model(positions, pose, core_model_config(config), as_json(request))
+    found = _core.model(positions, pose, core_model_config(config), as_json(request))
+    for reason in found.warnings:
+        warnings.warn(reason, ModelWarning, stacklevel=2)
+    return found
 
 
 def evaluate(
