@@ -126,8 +126,10 @@ void describe(Fields& fields, DatasetConfig& config) {
   if (config.kinds.empty())
     fields.group("tube", "shape of the tubes (paper, Algorithms 1 to 3)",
                  [&](Fields& inner) { describe(inner, config.tube); });
-  fields.group("bin", "the bin, an open box where its walls are not said to be otherwise",
-               [&](Fields& inner) { describe(inner, config.bin); });
+  fields.group("bin", "the bin, an open box where its walls are not said to be otherwise", [&](Fields& inner) {
+    describe(inner, config.bin);
+    describe_mesh(inner, config.bin);
+  });
   fields.group("surroundings", "what stands around the bin, drawn for each pile; none by default",
                [&](Fields& inner) { describe(inner, config.surroundings); });
   fields.group("physics", "the drop and the checks of its result",
@@ -188,7 +190,9 @@ void check_numbers(const DatasetConfig& config, const KeyPlaces& places) {
 
 DatasetConfig load_config(const std::string& path) {
   DatasetConfig config;
-  check(config, read_yaml_file(path, fields_of(config)));
+  const KeyPlaces places = read_yaml_file(path, fields_of(config));
+  load_mesh(config.bin, places, "bin");
+  check(config, places);
   config.tool_version = tool_version();
   return config;
 }

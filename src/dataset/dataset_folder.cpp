@@ -30,11 +30,16 @@ void refuse_if_foreign(const std::string& folder) {
   throw_config_error("{}: holds files, but no data set (config.yaml is missing); choose a new or empty folder", folder);
 }
 
+void copy_mesh(const OutputFolder& folder, const scene::Bin& bin) {
+  if (bin.surface) create_atomically(folder.make_entry(bin.mesh), bin.surface->stl);
+}
+
 /// Writes config.yaml where it is missing or gains scenes, and returns what it says.
 DatasetConfig create_or_extend_config(const OutputFolder& folder, const DatasetConfig& wanted) {
   const std::string path = config_path(folder.path());
   if (!path_exists(path)) {
     refuse_if_foreign(folder.path());
+    copy_mesh(folder, wanted.bin);
     if (create_atomically(folder.make_entry(kConfigFile), format_config(wanted))) return wanted;
   }
   const DatasetConfig there = read_dataset_config(folder.path());
@@ -50,7 +55,9 @@ DatasetConfig create_or_extend_config(const OutputFolder& folder, const DatasetC
 DatasetConfig read_dataset_config(const std::string& folder) {
   if (!path_exists(config_path(folder))) throw_io_error("{}: is no data set: config.yaml is missing", folder);
   DatasetConfig config;
-  check_of_any_version(config, read_yaml_file(config_path(folder), fields_of(config)));
+  const KeyPlaces places = read_yaml_file(config_path(folder), fields_of(config));
+  load_mesh(config.bin, folder);
+  check_of_any_version(config, places);
   return config;
 }
 
@@ -95,7 +102,10 @@ DatasetFolder::~DatasetFolder() try {
 } catch (const IoError&) {  // the next run tries again
 }
 
-void DatasetFolder::restore_config() { create_atomically(folder_.make_entry(kConfigFile), format_config(config_)); }
+void DatasetFolder::restore_config() {
+  copy_mesh(folder_, config_.bin);
+  create_atomically(folder_.make_entry(kConfigFile), format_config(config_));
+}
 
 bool DatasetFolder::is_complete(const std::string& scene_name) const {
   const ManifestRecord* record = manifest_.find(scene_name);

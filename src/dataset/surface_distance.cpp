@@ -37,6 +37,7 @@ BodySurface::BodySurface(const scene::PlacedTube& placed) {
 }
 
 BodySurface::BodySurface(const scene::Scene& scene) {
+  mesh_ = scene::TriangleTree(scene::mesh_triangles(scene.bin));
   for (const auto& parts : {scene::bin_parts(scene.bin), scene::surrounding_boxes(scene)})
     for (const scene::BinPart& part : parts) boxes_.push_back({part.box, part.world_from_part.inverse()});
   for (const scene::StandingCylinder& cylinder : scene::surrounding_cylinders(scene))
@@ -67,7 +68,7 @@ double BodySurface::distance(const Vec3& point) const {
     const Vec3 p = box_from_world * point;
     nearest = std::min(nearest, distance_from_bounds(Vec3((p - box.center()).cwiseAbs() - box.sizes() / 2.0)));
   }
-  return nearest;
+  return std::min(nearest, mesh_.distance(point));
 }
 
 std::vector<BodySurface> surfaces_of(const scene::Scene& scene) {

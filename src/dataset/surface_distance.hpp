@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tubebin/scene/scene.hpp"
+#include "tubebin/scene/triangle_tree.hpp"
 
 namespace tubebin::dataset {
 
@@ -38,6 +39,7 @@ class BodySurface {
     Pose box_from_world;
   };
   std::vector<PosedBox> boxes_;
+  scene::TriangleTree mesh_;
 };
 
 /// By label.

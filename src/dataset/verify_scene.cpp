@@ -152,12 +152,13 @@ void check_content(const scene::DatasetFiles& files, const DatasetConfig& undraw
   const auto parse = [&](const auto& parser, const std::string& file) {
     return parser(files.read(record.id, file), files.place(record.id, file));
   };
-  const scene::SceneRecord scene = parse(scene::parse_scene_json, "scene.json");
+  scene::SceneRecord scene = parse(scene::parse_scene_json, "scene.json");
   const auto cloud_parser = [&](const std::string& bytes, const std::string& name) {
     return scene::parse_scene_cloud(bytes, name, scene);
   };
   const DatasetConfig config = with_numbers(undrawn, scene.drawn);
   check_identity(scene, config, id, record, problems);
+  if (scene.scene.bin == config.bin) scene.scene.bin.surface = config.bin.surface;
   const auto add = [&](const Problems& found) { problems.insert(problems.end(), found.begin(), found.end()); };
   add(check_settings(scene, config));
   check_kinds(scene, config, problems);

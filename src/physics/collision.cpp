@@ -9,6 +9,51 @@
 namespace tubebin::physics {
 namespace {
 
+/// A unit vector across `direction` that hardly turns while the direction sways, other than unitOrthogonal().
+Vec3 steady_orthogonal(const Vec3& direction) {
+  Eigen::Index least = 0;
+  direction.cwiseAbs().minCoeff(&least);
+  return (Vec3::Unit(least) - direction[least] * direction).normalized();
+}
+
+/// A tube that leans by less than this sine stands: its rim points stay where they are, or it would walk on them. The
+/// deepest of all then lies at most 0.0015 radii deeper than the deepest of the eight.
+constexpr double kStandingSine = 0.02;
+
+}  // namespace
+
+std::array<Vec3, 8> rim_points(const CollisionCylinder& cylinder, const Vec3& center, const Vec3& toward) {
+  const Vec3 radial = toward - toward.dot(cylinder.direction) * cylinder.direction;
+  const bool stands = radial.squaredNorm() <= kStandingSine * kStandingSine * toward.squaredNorm();
+  const Vec3 u = stands ? steady_orthogonal(cylinder.direction) : Vec3(radial.normalized());
+  const Vec3 v = cylinder.direction.cross(u);
+  constexpr double kDiagonal = std::numbers::sqrt2 / 2.0;
+  constexpr double kCircle[][2] = {{1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},
+                                   {-1, 0}, {-kDiagonal, -kDiagonal}, {0, -1}, {kDiagonal, -kDiagonal}};
+  std::array<Vec3, 8> points;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = center + cylinder.radius * (kCircle[i][0] * u + kCircle[i][1] * v);
+  return points;
+}
+
+void keep_deepest_of_each_spot(std::size_t begin, double spot, std::vector<Touch>& touches) {
+  constexpr double kSameDirection = 0.9;  // cosine
+  const auto at = [&](std::size_t i) { return touches.begin() + static_cast<std::ptrdiff_t>(i); };
+  if (touches.size() - begin < 2) return;
+  std::stable_sort(at(begin), touches.end(), [](const Touch& a, const Touch& b) { return a.depth > b.depth; });
+  std::size_t kept = begin;
+  for (std::size_t i = begin; i < touches.size(); ++i) {
+    const Touch& touch = touches[i];
+    const bool known = std::any_of(at(begin), at(kept), [&](const Touch& t) {
+      return (t.position - touch.position).squaredNorm() < spot * spot && t.normal.dot(touch.normal) > kSameDirection;
+    });
+    if (!known) touches[kept++] = touch;
+  }
+  touches.resize(kept);
+}
+
+namespace {
+
 /// Parallel within this sine, two cylinders touch along a line and get a touch at each end of it.
 constexpr double kParallelSine = 0.15;
 
@@ -134,23 +179,6 @@ void add_line_touches(const CollisionCylinder& first, const CollisionCylinder& s
   }
 }
 
-/// Neighbouring cylinders find the same touch twice, at the joint between them: the deepest of a spot stays.
-void keep_deepest_of_each_spot(std::size_t begin, double spot, std::vector<Touch>& touches) {
-  constexpr double kSameDirection = 0.9;  // cosine
-  const auto at = [&](std::size_t i) { return touches.begin() + static_cast<std::ptrdiff_t>(i); };
-  if (touches.size() - begin < 2) return;
-  std::stable_sort(at(begin), touches.end(), [](const Touch& a, const Touch& b) { return a.depth > b.depth; });
-  std::size_t kept = begin;
-  for (std::size_t i = begin; i < touches.size(); ++i) {
-    const Touch& touch = touches[i];
-    const bool known = std::any_of(at(begin), at(kept), [&](const Touch& t) {
-      return (t.position - touch.position).squaredNorm() < spot * spot && t.normal.dot(touch.normal) > kSameDirection;
-    });
-    if (!known) touches[kept++] = touch;
-  }
-  touches.resize(kept);
-}
-
 /// The touch of a box (first) with a ball.
 std::optional<Touch> touch_box_with_ball(const scene::Box& box, const Vec3& center, double radius, double depth_min) {
   const Vec3 nearest = project_on_box(box, center);
@@ -209,17 +237,6 @@ void add_deepest_end_touch(const scene::Box& box, const CollisionCylinder& cylin
   if (deepest > 0.0) out.push_back(*touch_box_with_ball(box, at, 0.0, 0.0));
 }
 
-/// A unit vector across `direction` that hardly turns while the direction sways, other than unitOrthogonal().
-Vec3 steady_orthogonal(const Vec3& direction) {
-  Eigen::Index least = 0;
-  direction.cwiseAbs().minCoeff(&least);
-  return (Vec3::Unit(least) - direction[least] * direction).normalized();
-}
-
-/// A tube that leans by less than this sine stands: its rim points stay where they are, or it would walk on them. The
-/// deepest of all then lies at most 0.0015 radii deeper than the deepest of the eight.
-constexpr double kStandingSine = 0.02;
-
 /// A flat end's rim against a box: the rim point that lies deepest and seven more around, which keep a standing
 /// tube upright.
 void add_rim_touches(const scene::Box& box, const CollisionCylinder& cylinder, bool at_a, double depth_min,
@@ -228,17 +245,8 @@ void add_rim_touches(const scene::Box& box, const CollisionCylinder& cylinder, b
   const Vec3 toward = project_on_box(box, center) - center;
   const double reach = cylinder.radius - depth_min;
   if (toward.squaredNorm() > reach * reach) return;
-  const Vec3 radial = toward - toward.dot(cylinder.direction) * cylinder.direction;
-  const bool stands = radial.squaredNorm() <= kStandingSine * kStandingSine * toward.squaredNorm();
-  const Vec3 u = stands ? steady_orthogonal(cylinder.direction) : Vec3(radial.normalized());
-  const Vec3 v = cylinder.direction.cross(u);
-  constexpr double kDiagonal = std::numbers::sqrt2 / 2.0;
-  constexpr double kCircle[][2] = {{1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},
-                                   {-1, 0}, {-kDiagonal, -kDiagonal}, {0, -1}, {kDiagonal, -kDiagonal}};
-  for (const auto& [along_u, along_v] : kCircle) {
-    const Vec3 rim = center + cylinder.radius * (along_u * u + along_v * v);
+  for (const Vec3& rim : rim_points(cylinder, center, toward))
     if (const auto touch = touch_box_with_ball(box, rim, 0.0, depth_min)) out.push_back(*touch);
-  }
   add_deepest_end_touch(box, cylinder, center, out);
 }
 

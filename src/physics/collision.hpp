@@ -5,6 +5,7 @@
 /// flat end's face a bin edge, their rims are rounded by kRimRounding.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -70,6 +71,17 @@ struct CollisionBox {
 /// The bin as it collides: bin_parts() with the ground below the floor, so that nothing falls through. Walls reach down into
 /// it and overlap at the corners, so that the shortest way out of one never leads into another.
 std::vector<CollisionBox> collision_boxes(const scene::Bin& bin);
+
+/// Points around a flat end's rim, `center` its middle: the one that lies farthest along `toward` and seven more around,
+/// which keep a standing tube upright.
+std::array<Vec3, 8> rim_points(const CollisionCylinder& cylinder, const Vec3& center, const Vec3& toward);
+
+/// Of touches from `begin` on, neighbours find the same one twice, as cylinders at the joint between them: the deepest of a
+/// spot (metres) stays.
+void keep_deepest_of_each_spot(std::size_t begin, double spot, std::vector<Touch>& touches);
+
+/// Smooth walls that nobody sees, on a bin's inner space from its height up to another (metres).
+std::vector<CollisionBox> guard_boxes(const scene::Bin& bin, double height);
 
 /// Indices of a cylinder of one tube and of a cylinder of another.
 struct CylinderPair {

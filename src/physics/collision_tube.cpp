@@ -1,4 +1,5 @@
 #include "physics/collision.hpp"
+#include "physics/mesh_collision.hpp"
 
 namespace tubebin::physics {
 
@@ -46,6 +47,7 @@ void CollisionTube::follow(const scene::PlacedTube& tube) {
 }
 
 std::vector<CollisionBox> collision_boxes(const scene::Bin& bin) {
+  if (bin.has_mesh()) return {};
   constexpr double kGroundDepth = 1.0;  // metres; far beyond what a tube covers in a step
   std::vector<scene::BinPart> parts = scene::bin_parts(bin);
   const std::size_t standing = scene::inner_faces(bin).size();  // floor, walls and corners; then the rim
@@ -58,11 +60,22 @@ std::vector<CollisionBox> collision_boxes(const scene::Bin& bin) {
   return {parts.begin(), parts.end()};
 }
 
+std::vector<CollisionBox> guard_boxes(const scene::Bin& bin, double height) {
+  std::vector<scene::BinPart> walls = scene::bin_parts({.length = bin.length,
+                                                        .width = bin.width,
+                                                        .height = std::max(height, bin.height),
+                                                        .wall_thickness = bin.wall_thickness});
+  walls.erase(walls.begin());  // the floor
+  for (scene::BinPart& wall : walls) wall.box.min().z() = bin.height;
+  return {walls.begin(), walls.end()};
+}
+
 std::vector<scene::Contact> find_contacts(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin,
                                           double depth_min) {
   std::vector<CollisionTube> shapes;
   for (const scene::PlacedTube& tube : tubes) shapes.emplace_back(tube);
   const std::vector<CollisionBox> boxes = collision_boxes(bin);
+  const scene::TriangleTree mesh(scene::mesh_triangles(bin));
   std::vector<scene::Contact> contacts;
   std::vector<Touch> touches;
   const auto append = [&](std::size_t label_a, std::size_t label_b) {
@@ -73,6 +86,7 @@ std::vector<scene::Contact> find_contacts(const std::vector<scene::PlacedTube>& 
   };
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     collide(boxes, shapes[i], depth_min, touches);
+    collide(mesh, shapes[i], depth_min, touches);
     append(0, i + 1);
     for (std::size_t j = i + 1; j < shapes.size(); ++j) {
       collide(shapes[i], shapes[j], depth_min, touches);

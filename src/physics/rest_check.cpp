@@ -11,7 +11,22 @@ bool is_slow(const RigidWorld& world, const PhysicsOptions& options) {
   return true;
 }
 
+namespace {
+
+/// Beside the bounds or below them.
+std::optional<std::size_t> find_beyond(const RigidWorld& world, const scene::Box& bounds) {
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    Vec3 center = world.center_of_mass(i);
+    center.z() = std::min(center.z(), bounds.max().z());
+    if (!bounds.contains(center)) return i;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<std::size_t> find_outside(const RigidWorld& world, const scene::Bin& bin) {
+  if (bin.has_mesh()) return find_beyond(world, scene::bin_bounds(bin));
   const std::vector<scene::InnerFace> faces = scene::inner_faces(bin);
   for (std::size_t i = 0; i < world.size(); ++i) {
     Vec3 center = world.center_of_mass(i);

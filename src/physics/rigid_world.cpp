@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "physics/mesh_collision.hpp"
 #include "physics/near_cylinders.hpp"
 #include "physics/warm_start.hpp"
 
@@ -41,6 +42,7 @@ struct RigidWorld::Impl {
   PhysicsOptions options;
   scene::Bin bin;
   std::vector<CollisionBox> boxes;  ///< of the bin, with its guards while they stand
+  scene::TriangleTree mesh;         ///< of the bin
   bool guards_stand = false;
   std::optional<std::size_t> pulled;     ///< the tube that is held, whatever pushes
   std::vector<scene::PlacedTube> tubes;  ///< poses are the bodies'
@@ -111,7 +113,10 @@ struct RigidWorld::Impl {
     for (std::size_t i = 0; i < shapes.size(); ++i) margins.push_back(margin_of(i, time_step));
     near_cylinders.follow(shapes, margins);
     for (std::size_t j = 0; j < shapes.size(); ++j) {
-      if (pulled != j) collide(boxes, shapes[j], -margins[j], touches);
+      if (pulled != j) {
+        collide(boxes, shapes[j], -margins[j], touches);
+        collide(mesh, shapes[j], -margins[j], touches);
+      }
       append(kBinBody, j);
       for (const NearTube& near : near_cylinders.near(j)) {
         collide(shapes[near.first], shapes[j], near.cylinders, -std::max(margins[near.first], margins[j]), touches);
@@ -180,6 +185,7 @@ RigidWorld::RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene:
   impl_->options = options;
   impl_->bin = bin;
   impl_->boxes = collision_boxes(bin);
+  impl_->mesh = scene::TriangleTree(scene::mesh_triangles(bin));
   impl_->tubes = tubes;
   impl_->contacts = std::move(forces.contacts);
   impl_->threading = dThreadingAllocateSelfThreadedImplementation();
@@ -211,7 +217,7 @@ void RigidWorld::step(double time_step) {
 void RigidWorld::raise_guards(double height) {
   scene::Bin guarded = impl_->bin;
   guarded.height = std::max(guarded.height, height);
-  impl_->boxes = collision_boxes(guarded);
+  impl_->boxes = guarded.has_mesh() ? guard_boxes(impl_->bin, height) : collision_boxes(guarded);
   impl_->guards_stand = true;
 }
 

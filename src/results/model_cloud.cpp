@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 std::optional<scene::Bin> choose_bin(const CloudToModel& input, const ModelConfig& config) {
   if (config.bin_source == BinSource::config) return config.bin;
-  if (config.bin_source == BinSource::automatic && input.scene) return input.scene->scene.bin;
+  if (config.bin_source == BinSource::automatic && input.scene && !input.scene->scene.bin.has_mesh())
+    return input.scene->scene.bin;  // one of another form is found in the cloud
   return std::nullopt;
 }
 

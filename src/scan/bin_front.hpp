@@ -23,7 +23,7 @@ struct Layer {
 class BinFront {
  public:
   struct Part {
-    std::variant<SolidBox, SolidCylinder> solid;
+    std::variant<SolidBox, SolidCylinder, const MeshCaster*> solid;
     scene::PixelWindow window;
     double nearest_depth = 0.0;
   };
@@ -37,6 +37,7 @@ class BinFront {
  private:
   const scene::Camera& camera_;
   double depth_min_;
+  std::unique_ptr<MeshCaster> mesh_;
   std::vector<Part> parts_;
   std::vector<Interval> inside_;
 };

@@ -1,20 +1,11 @@
 #include "scan/ray_caster.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <stdexcept>
 
 namespace tubebin::scan {
 namespace {
-
-/// Embree walks its tree in single precision with rays from the origin: a direction and a bound are each off
-/// by at most 2^-24 of the distance, the box test by a few times that. Bounds grow by 32 x 2^-24 of the
-/// farthest corner's distance (4 micrometres at 2 m), so that no solid is missed; what is hit is then decided
-/// in double precision.
-constexpr double kBoundsPadding = 32.0 * 0x1p-24;
 
 /// What Embree hands through to the callbacks. A ray's id is its lane.
 struct PacketQuery : embree::QueryContext {
@@ -29,17 +20,7 @@ using Solids = std::vector<Labelled<Solid>>;
 template <typename Solid>
 void solid_bounds(const RTCBoundsFunctionArguments* arguments) {
   const auto& solids = *static_cast<const Solids<Solid>*>(arguments->geometryUserPtr);
-  const Eigen::AlignedBox3d box = solids[arguments->primID].solid.bounds();
-  const double padding = kBoundsPadding * box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm();
-  const Eigen::Vector3f low = (box.min().array() - padding).cast<float>();
-  const Eigen::Vector3f high = (box.max().array() + padding).cast<float>();
-  RTCBounds& bounds = *arguments->bounds_o;
-  bounds.lower_x = low.x();
-  bounds.lower_y = low.y();
-  bounds.lower_z = low.z();
-  bounds.upper_x = high.x();
-  bounds.upper_y = high.y();
-  bounds.upper_z = high.z();
+  embree::set_bounds(solids[arguments->primID].solid.bounds(), *arguments->bounds_o);
 }
 
 /// Rays that Embree has not found near the solid are looked at too: it is as much a part of their scene.
@@ -52,7 +33,7 @@ void intersect_solid(const RTCIntersectFunctionNArguments* arguments) {
   if (arguments->N == kLanes) return packet.limit(std::span<float, kLanes>(&RTCRayN_tfar(rays, kLanes, 0), kLanes));
   for (unsigned i = 0; i < arguments->N; ++i) {
     float& end = RTCRayN_tfar(rays, arguments->N, i);
-    end = std::min(end, search_end(packet.depth(static_cast<int>(RTCRayN_id(rays, arguments->N, i)))));
+    end = std::min(end, embree::search_end(packet.depth(static_cast<int>(RTCRayN_id(rays, arguments->N, i)))));
   }
 }
 
@@ -66,23 +47,6 @@ void attach(const embree::Device& device, const embree::Scene& scene, const Soli
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(scene.get(), geometry.get());
 }
-
-void check_device(const embree::Device& device) {
-  const RTCError error = rtcGetDeviceError(device.get());
-  if (error != RTC_ERROR_NONE) throw std::runtime_error(fmt::format("Embree failed with error {}", int{error}));
-}
-
-/// One for all scenes: making it takes a third of a millisecond.
-const embree::Device& device() {
-  static const embree::Device device = [] {
-    embree::Device made(rtcNewDevice("threads=1"));
-    check_device(made);
-    return made;
-  }();
-  return device;
-}
-
-float search_start(double depth_min) { return std::max(0.0F, static_cast<float>(depth_min) * (1.0F - 0x1p-22F)); }
 
 /// Thinner gaps between the solids of one body, and thinner walls, are rounding (metres).
 constexpr double kSliver = 1e-9;
@@ -142,13 +106,14 @@ RayCaster::RayCaster(SceneSolids solids, double depth_min, double depth_max)
     : solids_(std::move(solids)),
       depth_min_(depth_min - kDepthTolerance),
       depth_max_(depth_max + kDepthTolerance),
-      scene_(rtcNewScene(device().get())) {
-  attach(device(), scene_, solids_.cylinders);
-  attach(device(), scene_, solids_.spheres);
-  attach(device(), scene_, solids_.cylinders_around);
-  attach(device(), scene_, solids_.boxes_around);
+      scene_(rtcNewScene(embree::device().get())) {
+  attach(embree::device(), scene_, solids_.cylinders);
+  attach(embree::device(), scene_, solids_.spheres);
+  attach(embree::device(), scene_, solids_.cylinders_around);
+  attach(embree::device(), scene_, solids_.boxes_around);
   rtcCommitScene(scene_.get());
-  check_device(device());
+  if (!solids_.bin_mesh.empty()) mesh_ = std::make_unique<MeshCaster>(solids_.bin_mesh);
+  embree::check_device(embree::device());
 }
 
 Hit RayCaster::first_hit(const Vec3& direction) const {
@@ -158,8 +123,8 @@ Hit RayCaster::first_hit(const Vec3& direction) const {
   ray.ray.dir_x = static_cast<float>(direction.x());
   ray.ray.dir_y = static_cast<float>(direction.y());
   ray.ray.dir_z = static_cast<float>(direction.z());
-  ray.ray.tnear = search_start(depth_min_);
-  ray.ray.tfar = search_end(std::min(depth_max_, packet.depth(0)));
+  ray.ray.tnear = embree::search_start(depth_min_);
+  ray.ray.tfar = embree::search_end(std::min(depth_max_, packet.depth(0)));
   ray.ray.mask = ~0U;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   PacketQuery query(packet);
@@ -189,8 +154,8 @@ void RayCaster::offer_by_tree(RayPacket& packet, int count) const {
     rays.ray.dir_x[lane] = static_cast<float>(direction.x());
     rays.ray.dir_y[lane] = static_cast<float>(direction.y());
     rays.ray.dir_z[lane] = static_cast<float>(direction.z());
-    rays.ray.tnear[lane] = search_start(depth_min_);
-    rays.ray.tfar[lane] = search_end(depth_max_);
+    rays.ray.tnear[lane] = embree::search_start(depth_min_);
+    rays.ray.tfar[lane] = embree::search_end(depth_max_);
     rays.ray.mask[lane] = ~0U;
     rays.ray.id[lane] = static_cast<unsigned>(lane);
     rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
@@ -204,6 +169,12 @@ void RayCaster::decide(RayPacket& packet, int count) const {
   if (packet.has_special())
     for (int lane = 0; lane < count; ++lane)
       if (packet.is_special(lane)) packet.set_first(lane, first_boundary_hit(packet.direction(lane)));
+  if (mesh_)
+    for (int lane = 0; lane < count; ++lane) {
+      const double end = std::min(depth_max_, packet.depth(lane));
+      const double depth = mesh_->first_depth(packet.direction(lane), depth_min_, end);
+      if (depth <= end) packet.set_first(lane, {depth, 0});  // 0 is the lowest label: first at equal depths
+    }
   packet.forget_beyond(depth_max_);
 }
 

@@ -2,9 +2,11 @@
 // decides.
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "scan/embree.hpp"
+#include "scan/mesh_caster.hpp"
 #include "scan/ray_packet.hpp"
 #include "scan/scene_solids.hpp"
 
@@ -51,6 +53,7 @@ class RayCaster {
   double depth_min_;
   double depth_max_;
   embree::Scene scene_;
+  std::unique_ptr<MeshCaster> mesh_;  // of the bin, if it has one
 };
 
 }  // namespace tubebin::scan

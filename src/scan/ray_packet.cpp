@@ -1,5 +1,6 @@
 #include "scan/ray_packet.hpp"
 
+#include "scan/embree.hpp"
 #include "tubebin/core/wide.hpp"
 
 namespace tubebin::scan {
@@ -78,7 +79,7 @@ TUBEBIN_WIDE void RayPacket::limit(std::span<float, kLanes> search_ends) const {
   std::array<float, kLanes> own;
   for (std::size_t i = 0; i < blocks_.size(); ++i)
     for (std::size_t lane = 0; lane < kBlockLanes; ++lane)
-      own[i * kBlockLanes + lane] = search_end(blocks_[i].depth[lane]);
+      own[i * kBlockLanes + lane] = embree::search_end(blocks_[i].depth[lane]);
   for (std::size_t lane = 0; lane < kLanes; ++lane) search_ends[lane] = std::min(search_ends[lane], own[lane]);
 }
 

@@ -27,9 +27,6 @@ struct Hit {
   bool found() const { return depth < std::numeric_limits<double>::infinity(); }
 };
 
-/// The single precision bound just beyond a depth (metres), so that what is equally deep is still looked at.
-inline float search_end(double depth) { return static_cast<float>(std::max(depth, 0.0)) * (1.0F + 0x1p-22F) + 1e-9F; }
-
 class RayPacket {
  public:
   /// At most kLanes directions; the last fills the lanes that are left. Depths below depth_min don't count.

@@ -30,6 +30,9 @@ SceneSolids scene_solids(const scene::Scene& scene) {
   for (const scene::PlacedTube& tube : scene.tubes) add_tube(tube, ++label, scanner, solids);
   for (const scene::BinPart& part : scene::bin_parts(scene.bin))
     solids.bin.push_back(box_around_scanner(part, scanner));
+  solids.bin_mesh = scene::mesh_triangles(scene.bin);
+  for (scene::Triangle& triangle : solids.bin_mesh)
+    for (Vec3& corner : triangle.corners) corner -= scanner;
   for (const scene::BinPart& part : scene::surrounding_boxes(scene))
     solids.boxes_around.push_back({box_around_scanner(part, scanner), 0});
   for (const scene::StandingCylinder& cylinder : scene::surrounding_cylinders(scene)) {

@@ -22,6 +22,11 @@ class ViewBounds {
 
   void add_box(const SolidBox& box) { add_hexahedron(box.corners()); }
 
+  void add_triangle(const scene::Triangle& triangle) {
+    const auto& [a, b, c] = triangle.corners;
+    add_hexahedron({a, b, c, c, a, b, c, c});
+  }
+
   void add_cylinder(const SolidCylinder& cylinder) {
     if (!add_disc(cylinder.base(), cylinder.axis(), cylinder.radius()) ||
         !add_disc(cylinder.top(), cylinder.axis(), cylinder.radius()))
@@ -119,8 +124,10 @@ scene::PixelWindow view_window(const SceneSolids& solids, SeenBodies bodies, con
   ViewBounds bounds(camera, depth_min);
   for (const auto& cylinder : solids.cylinders) bounds.add_cylinder(cylinder.solid);
   for (const auto& sphere : solids.spheres) bounds.add_sphere(sphere.solid);
-  if (bodies != SeenBodies::tubes)
+  if (bodies != SeenBodies::tubes) {
     for (const SolidBox& box : solids.bin) bounds.add_box(box);
+    for (const scene::Triangle& triangle : solids.bin_mesh) bounds.add_triangle(triangle);
+  }
   if (bodies == SeenBodies::all) {
     for (const auto& box : solids.boxes_around) bounds.add_box(box.solid);
     for (const auto& cylinder : solids.cylinders_around) bounds.add_cylinder(cylinder.solid);

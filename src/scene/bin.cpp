@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
+#include <tuple>
 
+#include "tubebin/core/atomic_file.hpp"
 #include "tubebin/scene/scene.hpp"
 
 namespace tubebin::scene {
@@ -100,7 +103,16 @@ Box BinPart::bounds_in_world() const {
   return bounds;
 }
 
+bool operator==(const Bin& a, const Bin& b) {
+  const auto values = [](const Bin& bin) {
+    return std::tie(bin.length, bin.width, bin.height, bin.wall_thickness, bin.draft_deg, bin.rim_width,
+                    bin.corner_radius, bin.mesh, bin.mesh_scale);
+  };
+  return values(a) == values(b);
+}
+
 std::vector<BinPart> bin_parts(const Bin& bin) {
+  if (bin.has_mesh()) return {};
   std::vector<BinPart> parts = box_parts(bin);
   if (bin.is_box()) return parts;
   parts.resize(1);  // the floor
@@ -108,6 +120,13 @@ std::vector<BinPart> bin_parts(const Bin& bin) {
   if (bin.rim_width > 0.0)
     for (const Side& side : sides(bin)) parts.push_back(rim(side, bin));
   return parts;
+}
+
+Box bin_bounds(const Bin& bin) {
+  if (bin.surface) return bin.surface->bounds;
+  Box bounds;
+  for (const BinPart& part : bin_parts(bin)) bounds.extend(part.bounds_in_world());
+  return bounds;
 }
 
 std::vector<InnerFace> inner_faces(const Bin& bin) {
@@ -139,7 +158,63 @@ void describe(Fields& fields, Bin& bin) {
   describe_walls(fields, bin);
 }
 
+void describe_mesh(Fields& fields, Bin& bin) {
+  fields.text(
+      "mesh", bin.mesh,
+      "STL file, relative to this one, of the bin's surfaces in its frame (origin at the middle of the floor, z "
+      "up), instead of walls, rim and corners; length, width and height are then the space within it that tubes "
+      "fall into");
+  fields.number("mesh_scale", bin.mesh_scale, {1e-6, 1000.0}, "m",
+                "for each unit of the mesh's file; 0.001 for millimetres");
+}
+
+namespace {
+
+void check_mesh(const Bin& bin, const KeyPlaces& places, const std::string& prefix) {
+  if (!bin.is_box())
+    places.fail(prefix + ".mesh", fmt::format("'{}' is not valid beside draft_deg, rim_width or corner_radius; valid: "
+                                              "one or the other, a mesh has walls of its own",
+                                              bin.mesh));
+  const Box inner(Vec3(-bin.length / 2.0, -bin.width / 2.0, 0.0), Vec3(bin.length / 2.0, bin.width / 2.0, bin.height));
+  const Box bounds = bin_bounds(bin);
+  const Vec3 rounding = Vec3::Constant(1e-6);  // metres; STL's numbers are single
+  const char* keys[] = {".length", ".width", ".height"};
+  for (int axis = 0; axis < 3; ++axis)
+    if (inner.min()[axis] < bounds.min()[axis] - rounding[axis] ||
+        inner.max()[axis] > bounds.max()[axis] + rounding[axis])
+      places.fail(
+          prefix + keys[axis],
+          fmt::format("{} m is not valid; valid: a space within the mesh, which reaches from {:.6g} to {:.6g} m "
+                      "along {} (mesh_scale {}; the middle of the floor is the origin)",
+                      inner.sizes()[axis], bounds.min()[axis], bounds.max()[axis], "xyz"[axis], bin.mesh_scale));
+}
+
+}  // namespace
+
+const std::vector<Triangle>& mesh_triangles(const Bin& bin) {
+  static const std::vector<Triangle> none;
+  if (!bin.has_mesh()) return none;
+  if (!bin.surface)
+    throw_io_error("{}: the bin's mesh is not there; valid: that file in the data set's folder", bin.mesh);
+  return bin.surface->triangles;
+}
+
+void load_mesh(Bin& bin, const std::string& folder) {
+  if (!bin.has_mesh()) return;
+  const std::string path = (std::filesystem::path(folder) / bin.mesh).string();
+  constexpr std::uint64_t kBytesMax = 100'000'000;  // ten times what a binary file may need: ASCII is longer
+  bin.surface = std::make_shared<const BinMesh>(parse_stl(read_file(path, kBytesMax), path, bin.mesh_scale));
+  bin.mesh = bin.surface->file_name();
+}
+
+void load_mesh(Bin& bin, const KeyPlaces& places, const std::string& prefix) {
+  std::string file = places.find(prefix + ".mesh");
+  for (int number = 0; number < 2; ++number) file.resize(std::min(file.rfind(':'), file.size()));  // line and column
+  load_mesh(bin, std::filesystem::path(file).parent_path().string());
+}
+
 void check(const Bin& bin, const KeyPlaces& places, const std::string& prefix) {
+  if (bin.has_mesh()) return check_mesh(bin, places, prefix);
   const double most = std::min(bin.length, bin.width) / 2.0;
   if (bin.corner_radius > most)
     places.fail(

@@ -38,8 +38,7 @@ Prism prism_of(const StandingCylinder& cylinder, const Bin&) {
 }
 
 Prism prism_of(const StandingBin& bin, const Bin& form) {
-  Box bounds;
-  for (const BinPart& part : bin_parts(form)) bounds.extend(part.bounds_in_world());
+  const Box bounds = bin_bounds(form);
   return {.footprint = {.center = bin.position.head<2>(),
                         .half_size = bounds.sizes().head<2>() / 2.0,
                         .yaw = radians(bin.yaw_deg)},
@@ -126,7 +125,7 @@ StandingCylinder random_cylinder(const SurroundingsOptions& options, const Vec3&
 }  // namespace
 
 StandingBox table_of(const SurroundingsOptions& options, const Bin& bin) {
-  return {.position = {0.0, 0.0, -bin.wall_thickness - options.table_thickness},
+  return {.position = {0.0, 0.0, bin_bounds(bin).min().z() - options.table_thickness},
           .size = {options.table_length, options.table_width, options.table_thickness}};
 }
 
@@ -141,7 +140,7 @@ PlacedSurroundings place_surroundings(const SurroundingsOptions& options, const 
     for (const Prism& prism : prisms_of(tube)) placer.keep_clear_of(prism);
   for (const Scanner& scanner : scanners) placer.keep_clear_of(prism_around(scanner.position, scanner.position, 0.0));
 
-  const Vec3 on_table(0.0, 0.0, -bin.wall_thickness);
+  const Vec3 on_table(0.0, 0.0, bin_bounds(bin).min().z());
   for (int i = 0; i < options.bins; ++i) placer.add(StandingBin{}, "further bin", placed.bins);
   for (int i = random.integer(options.box_count_min, options.box_count_max); i > 0; --i)
     placer.add(random_box(options, on_table, random), "box", placed.boxes);

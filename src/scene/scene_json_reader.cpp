@@ -53,6 +53,7 @@ Bin read_bin(const JsonPlace& place) {
   Bin bin;
   place.fields([&](Fields& fields) { describe_box(fields, bin); });
   if (place.has("draft_deg")) place.fields([&](Fields& fields) { describe_walls(fields, bin); });
+  if (place.has("mesh")) place.fields([&](Fields& fields) { describe_mesh(fields, bin); });
   if (bin.corner_radius > std::min(bin.length, bin.width) / 2.0)
     place.at("corner_radius").fail("at most half of length and of width");
   return bin;

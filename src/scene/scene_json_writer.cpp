@@ -15,6 +15,7 @@ OrderedJson bin_to_json(Bin bin, cloud::Color color) {
   OrderedJson json = {{"label", 0}, {"color", color_to_json(color)}};
   json.update(fields_to_json([&](Fields& fields) { describe_box(fields, bin); }));
   if (!bin.is_box()) json.update(fields_to_json([&](Fields& fields) { describe_walls(fields, bin); }));
+  if (bin.has_mesh()) json.update(fields_to_json([&](Fields& fields) { describe_mesh(fields, bin); }));
   return json;
 }
 

@@ -56,8 +56,9 @@ void check(const SurroundingsOptions& options, const Bin& bin, const KeyPlaces& 
                     fmt::format("{} need a table to stand on; set {}.table.length and width", count, prefix));
     return;
   }
-  Box bounds;
-  for (const BinPart& part : bin_parts(bin)) bounds.extend(part.bounds_in_world());
+  if (bin.has_mesh() && options.bins > 0)
+    places.fail(prefix + ".bins", fmt::format("{} are not valid beside bin.mesh; valid: 0", options.bins));
+  const Box bounds = bin_bounds(bin);
   const auto check_side = [&](const char* key, double side, double needed) {
     if (side < needed)
       places.fail(

@@ -4,10 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "tubebin/core/yaml.hpp"
+#include "tubebin/scene/bin_mesh.hpp"
 #include "tubebin/scene/scanner_effects.hpp"
 #include "tubebin/scene/surroundings.hpp"
 #include "tubebin/tube/solids.hpp"
@@ -24,11 +27,17 @@ struct Bin {
   double draft_deg = 0.0;      ///< degrees by which the walls lean outward
   double rim_width = 0.0;      ///< from the walls' inner upper edge outward; 0: none
   double corner_radius = 0.0;  ///< between the walls' inner faces; 0: edges
+  std::string mesh = {};       ///< an STL file of its surfaces; length, width and height are then its inner space's
+  double mesh_scale = 1.0;     ///< metres for each unit of that file
+  /// Read from that file by load_mesh(); none where there is no file, or it is not read yet.
+  std::shared_ptr<const BinMesh> surface = {};
 
+  bool has_mesh() const { return !mesh.empty(); }
   /// Upright walls that meet at right angles, without a rim.
   bool is_box() const { return draft_deg == 0.0 && rim_width == 0.0 && corner_radius == 0.0; }
 
-  friend bool operator==(const Bin&, const Bin&) = default;
+  /// Of loaded meshes the names tell the bytes.
+  friend bool operator==(const Bin& a, const Bin& b);
 };
 
 /// An axis-aligned solid box, metres.
@@ -46,8 +55,21 @@ struct BinPart {
 
 /// The bin's solids, whose union is the bin for all who simulate, scan or draw it: the floor slab, then the walls at -x,
 /// +x, -y, +y. A box's walls share faces and do not overlap. Where walls lean, each is a plate behind its inner face; plates
-/// of rounded corners follow, then the rim. These overlap outside of the inner space.
+/// of rounded corners follow, then the rim. These overlap outside of the inner space. None where the bin has a mesh: its
+/// triangles are the bin.
 std::vector<BinPart> bin_parts(const Bin& bin);
+
+/// The surfaces of a bin that has a mesh; none of another. Throws IoError where they are not loaded.
+const std::vector<Triangle>& mesh_triangles(const Bin& bin);
+
+/// Around all of the bin, world frame.
+Box bin_bounds(const Bin& bin);
+
+/// Reads the bin's mesh, which lies in `folder`, and names it by its content (BinMesh::file_name). Nothing without one.
+/// Throws IoError.
+void load_mesh(Bin& bin, const std::string& folder);
+/// The same of a configuration: the mesh lies relative to the file that names it.
+void load_mesh(Bin& bin, const KeyPlaces& places, const std::string& prefix);
 
 /// A plane that bounds a bin's inner space.
 struct InnerFace {
@@ -137,6 +159,7 @@ void describe(Fields& fields, Bin& bin);
 /// Length to wall_thickness, which every bin has, and what makes a bin other than a box.
 void describe_box(Fields& fields, Bin& bin);
 void describe_walls(Fields& fields, Bin& bin);
+void describe_mesh(Fields& fields, Bin& bin);
 void check(const Bin& bin, const KeyPlaces& places, const std::string& prefix);
 /// The camera alone, without its effects.
 void describe(Fields& fields, Scanner& scanner);
