@@ -6,6 +6,7 @@
 #include "depth_image.hpp"
 #include "scene.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/results/cloud_files.hpp"
 
 namespace tubebin::python {
@@ -21,7 +22,10 @@ std::vector<std::string> names_of(const DatasetFiles& files) {
 
 std::optional<Scene> read_scene(const DatasetFiles& files, const std::string& name) {
   if (!files.has(name, "scene.json")) return std::nullopt;
-  return Scene{scene::parse_scene_json(files.read(name, "scene.json"), files.place(name, "scene.json"))};
+  Scene scene{scene::parse_scene_json(files.read(name, "scene.json"), files.place(name, "scene.json"))};
+  scene::Bin& bin = scene.record.scene.bin;
+  if (bin.has_mesh() && path_exists(files.dataset() + "/" + bin.mesh)) load_mesh(bin, files.dataset());
+  return scene;
 }
 
 /// In the world frame and metres.

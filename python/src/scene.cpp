@@ -21,7 +21,9 @@ class GenerationError : public std::runtime_error {
 
 DatasetConfig parse_config(const std::string& text) {
   DatasetConfig config;
-  check(config, read_yaml_text(text, "config", fields_of(config)));
+  const KeyPlaces places = read_yaml_text(text, "config", fields_of(config));
+  load_bin_mesh(config, places);
+  check(config, places);
   config.tool_version = tool_version();
   return config;
 }

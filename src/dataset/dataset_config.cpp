@@ -188,10 +188,16 @@ void check_numbers(const DatasetConfig& config, const KeyPlaces& places) {
     check(config.scanners[i], config.bin, config.surroundings, places, fmt::format("scanners[{}]", i));
 }
 
+void load_bin_mesh(DatasetConfig& config, const KeyPlaces& places) {
+  if (config.distributions.contains("bin.mesh_scale"))
+    places.fail("bin.mesh_scale", "can't be drawn; valid: one number");
+  load_mesh(config.bin, places, "bin");
+}
+
 DatasetConfig load_config(const std::string& path) {
   DatasetConfig config;
   const KeyPlaces places = read_yaml_file(path, fields_of(config));
-  load_mesh(config.bin, places, "bin");
+  load_bin_mesh(config, places);
   check(config, places);
   config.tool_version = tool_version();
   return config;

@@ -184,6 +184,7 @@ jobs::AttemptResult export_one(const ExportFormat& format, const scene::DatasetF
     const std::string bytes = dataset.read(scene, cloud), text = dataset.read(scene, "scene.json");
     hashes.require_recorded(scene, {record_bytes(bytes).xxh128, record_bytes(text).xxh128});
     scene::SceneRecord record = scene::parse_scene_json(text, dataset.place(scene, "scene.json"));
+    load_mesh(record.scene.bin, dataset.dataset());
     cloud::Cloud points = scene::parse_scene_cloud(bytes, dataset.place(scene, cloud), record);
     scene::require_same_scene(record, points, scene, dataset.place(scene, "scene.json"));
     files = format.export_scene({entry, std::move(record), std::move(points)});

@@ -29,7 +29,9 @@ Pixel pixel_on_ray(const cloud::Point& point, const scene::Camera& camera) {
 scene::PixelWindow bin_window(const scene::Scene& scene, const scene::Camera& camera) {
   const Pose scanner_from_world = camera.world_from_scanner().inverse();
   Eigen::AlignedBox2d bounds;
-  for (const scene::BinPart& part : scene::bin_parts(scene.bin))
+  std::vector<scene::BinPart> parts = scene::bin_parts(scene.bin);
+  if (parts.empty()) parts.push_back({scene::bin_bounds(scene.bin)});
+  for (const scene::BinPart& part : parts)
     for (const Vec3& corner : part.corners_in_world()) {
       const Vec3 p_in_scanner = scanner_from_world * corner;
       if (p_in_scanner.z() < scene.scanner.range_min) return {0, 0, camera.width(), camera.height()};

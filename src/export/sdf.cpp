@@ -64,6 +64,11 @@ std::string mesh_path(const SceneEntry& entry, std::size_t k) {
   return published_path(entry, "gazebo_worlds", fmt::format("_{}.stl", k + 1));
 }
 
+std::string bin_mesh_path(const SceneEntry& entry, const scene::Bin& bin) {
+  const std::string world = published_path(entry, "gazebo_worlds", ".world");
+  return world.substr(0, world.rfind('/') + 1) + bin.mesh;
+}
+
 Pose at(const Vec3& position) { return make_pose(Quat::Identity(), position); }
 
 /// SDFormat's cameras look along +x with z up, ours along +z with y down.
@@ -167,10 +172,22 @@ class WorldWriter {
     const std::vector<scene::BinPart> parts = scene::bin_parts(scene_.bin);
     out_.element("model", named("bin"), [&] {
       out_.text("static", "1");
+      if (scene_.bin.has_mesh()) write_bin_mesh();
       for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::string name = i < std::size(kNames) ? kNames[i] : fmt::format("part_{}", i + 1);
         write_box(name, parts[i]);
       }
+    });
+  }
+
+  void write_bin_mesh() {
+    out_.element("link", named("mesh"), [&] {
+      write_solid("mesh", Pose::Identity(), physics_.friction_bin, &colors_[0], [&] {
+        out_.element("mesh", [&] {
+          out_.text("uri", scene_.bin.mesh);
+          out_.text("scale", triple(Vec3::Constant(scene_.bin.mesh_scale)));
+        });
+      });
     });
   }
 
@@ -324,6 +341,8 @@ class SdfFormat : public ExportFormat {
     const std::vector<scene::PlacedTube>& tubes = scene.record.scene.tubes;
     for (std::size_t k = 0; k < tubes.size(); ++k)
       if (tubes[k].solids_in_world().has_open_end()) files.beside[mesh_path(scene.entry, k)] = tube_stl(tubes[k].tube);
+    const scene::Bin& bin = scene.record.scene.bin;
+    if (bin.surface) files.beside[bin_mesh_path(scene.entry, bin)] = bin.surface->stl;
     return files;
   }
 

@@ -21,7 +21,10 @@ struct Nearest {
 }  // namespace
 
 SurfaceNormals::SurfaceNormals(const scene::Scene& scene)
-    : boxes_(scene::bin_parts(scene.bin)), cylinders_(scene::surrounding_cylinders(scene)) {
+    : boxes_(scene::bin_parts(scene.bin)),
+      cylinders_(scene::surrounding_cylinders(scene)),
+      mesh_(scene::mesh_triangles(scene.bin)),
+      scanner_(scene.scanner.position) {
   const std::vector<scene::BinPart> around = scene::surrounding_boxes(scene);
   boxes_.insert(boxes_.end(), around.begin(), around.end());
   for (const scene::PlacedTube& tube : scene.tubes) tubes_.push_back(tube.solids_in_world());
@@ -74,6 +77,14 @@ Vec3 SurfaceNormals::at_background(const Vec3& point) const {
     if (across <= cylinder.radius) nearest.offer(from_foot.z() - cylinder.height, Vec3::UnitZ());
     if (from_foot.z() >= 0.0 && from_foot.z() <= cylinder.height && across > 0.0)
       nearest.offer(across - cylinder.radius, Vec3(from_foot.x(), from_foot.y(), 0.0) / across);
+  }
+  std::vector<const scene::Triangle*> near;
+  const Vec3 reach = Vec3::Constant(std::min(nearest.distance, mesh_.distance(point)));
+  mesh_.find({point - reach, point + reach}, near);
+  for (const scene::Triangle* triangle : near) {  // of its two sides the one that the scanner sees
+    const Vec3 normal = triangle->normal();
+    nearest.offer((point - triangle->project(point)).norm(),
+                  normal.dot(scanner_ - triangle->corners[0]) < 0.0 ? Vec3(-normal) : normal);
   }
   return nearest.normal;
 }

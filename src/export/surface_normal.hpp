@@ -5,6 +5,7 @@
 
 #include "tubebin/cloud/cloud.hpp"
 #include "tubebin/scene/scene.hpp"
+#include "tubebin/scene/triangle_tree.hpp"
 
 namespace tubebin::exports {
 
@@ -22,6 +23,8 @@ class SurfaceNormals {
   std::vector<scene::BinPart> boxes_;  ///< of the bin and of what stands around it
   std::vector<scene::StandingCylinder> cylinders_;
   std::vector<tube::TubeSolids> tubes_;
+  scene::TriangleTree mesh_;  ///< of the bin
+  Vec3 scanner_;
 };
 
 }  // namespace tubebin::exports

@@ -235,6 +235,18 @@ Mesh surroundings_mesh(const scene::Scene& scene, const Vec3& origin, const Fine
   return mesh;
 }
 
+void add_triangles(const std::vector<scene::Triangle>& triangles, const Vec3& origin, const Vec3& eye, Mesh& mesh) {
+  for (const scene::Triangle& triangle : triangles) {
+    const bool faces_eye = triangle.normal().dot(eye - triangle.corners[0]) >= 0.0;
+    const Vec3 normal = (faces_eye ? 1.0 : -1.0) * triangle.normal();
+    for (const int corner : {0, faces_eye ? 1 : 2, faces_eye ? 2 : 1}) {
+      const Vec3 position = triangle.corners[static_cast<std::size_t>(corner)] - origin;
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+      mesh.vertices.push_back({position.cast<float>(), normal.cast<float>()});
+    }
+  }
+}
+
 void add_part(const scene::BinPart& part, const Vec3& origin, const Fineness& fineness, Mesh& mesh) {
   MeshBuilder builder(mesh, origin, fineness);
   for (int axis = 0; axis < 3; ++axis)

@@ -37,4 +37,7 @@ Mesh surroundings_mesh(const scene::Scene& scene, const Vec3& origin, const Fine
 /// The faces of a bin's part, around `origin` in world axes.
 void add_part(const scene::BinPart& part, const Vec3& origin, const Fineness& fineness, Mesh& mesh);
 
+/// A bin's triangles around `origin` in world axes, each with the normal and winding of the side that one sees from `eye`.
+void add_triangles(const std::vector<scene::Triangle>& triangles, const Vec3& origin, const Vec3& eye, Mesh& mesh);
+
 }  // namespace tubebin::render

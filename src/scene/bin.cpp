@@ -204,7 +204,12 @@ void load_mesh(Bin& bin, const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / bin.mesh).string();
   constexpr std::uint64_t kBytesMax = 100'000'000;  // ten times what a binary file may need: ASCII is longer
   bin.surface = std::make_shared<const BinMesh>(parse_stl(read_file(path, kBytesMax), path, bin.mesh_scale));
-  bin.mesh = bin.surface->file_name();
+  const std::string name = bin.surface->file_name();
+  if (bin.mesh.starts_with("bin-") && bin.mesh.size() == name.size() && bin.mesh != name)
+    throw_io_error(
+        "{}: its content has changed: it would be called {}; valid: the file that the data set was made with", path,
+        name);
+  bin.mesh = name;
 }
 
 void load_mesh(Bin& bin, const KeyPlaces& places, const std::string& prefix) {

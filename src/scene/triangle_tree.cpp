@@ -1,6 +1,7 @@
 #include "tubebin/scene/triangle_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tubebin::scene {
@@ -59,12 +60,12 @@ double TriangleTree::distance(const Vec3& point) const {
   if (empty()) return nearest;
   std::vector<const Triangle*> found;
   // A box holds all that is as near as its half side.
-  for (double reach = 1e-4; nearest > reach; reach = std::isfinite(nearest) ? nearest : 4.0 * reach) {
+  for (double reach = 1e-4;; reach = std::isfinite(nearest) ? nearest : 4.0 * reach) {
     found.clear();
     find({point - Vec3::Constant(reach), point + Vec3::Constant(reach)}, found);
     for (const Triangle* triangle : found) nearest = std::min(nearest, (point - triangle->project(point)).norm());
+    if (nearest <= reach || std::isinf(reach)) return nearest;
   }
-  return nearest;
 }
 
 }  // namespace tubebin::scene

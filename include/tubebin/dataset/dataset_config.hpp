@@ -62,6 +62,10 @@ void describe(Fields& fields, DatasetConfig& config);
 /// The configuration as `describe` wants it bound, for read_yaml_*, write_yaml and the like.
 std::function<void(Fields&)> fields_of(DatasetConfig& config);
 
+/// Reads the mesh that bin.mesh names, relative to the file that names it, or to the working directory where that is none.
+/// Throws ConfigError, IoError.
+void load_bin_mesh(DatasetConfig& config, const KeyPlaces& places);
+
 /// Reads and checks a configuration file, for this tool version. Throws ConfigError with file:line:column, key, value
 /// and what is valid.
 DatasetConfig load_config(const std::string& path);

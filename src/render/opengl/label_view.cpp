@@ -50,6 +50,7 @@ Image draw_label_view(const scene::Scene& scene, const scene::PixelWindow& windo
   const Vec3& origin = scene.scanner.position;
   Mesh bin;
   for (const scene::BinPart& part : scene::bin_parts(scene.bin)) add_part(part, origin, kLabelFineness, bin);
+  add_triangles(scene::mesh_triangles(scene.bin), origin, origin, bin);
   set_color(colors[0]);
   draw(bin);
   draw(surroundings_mesh(scene, origin, kLabelFineness));

@@ -32,8 +32,8 @@ struct View {
 /// What a picture must show: the bin, the tubes and what stands around.
 Eigen::AlignedBox3d scene_bounds(const scene::Scene& scene) {
   Eigen::AlignedBox3d bounds;
-  for (const auto& parts : {scene::bin_parts(scene.bin), scene::surrounding_boxes(scene)})
-    for (const scene::BinPart& part : parts) bounds.extend(part.bounds_in_world());
+  bounds.extend(scene::bin_bounds(scene.bin));
+  for (const scene::BinPart& part : scene::surrounding_boxes(scene)) bounds.extend(part.bounds_in_world());
   for (const scene::StandingCylinder& cylinder : scene::surrounding_cylinders(scene)) {
     const Vec3 reach(cylinder.radius, cylinder.radius, 0.0);
     bounds.extend(Vec3(cylinder.position - reach));
@@ -89,16 +89,27 @@ Ball ball_around(const Eigen::AlignedBox3d& bounds) {
 
 enum class Wall { solid, glass };
 
+/// Whether what a picture shows of a bin, its bounds, stands between the eye and the bin's inside.
+bool hides_inside(const scene::Box& bounds, const View& view) {
+  const bool upright = bounds.max().z() > 0.0;
+  const Vec3 outward = Vec3(bounds.center().x(), bounds.center().y(), 0.0).normalized();
+  return upright && outward.dot(view.backward) > kGlassCosine;
+}
+
 /// The walls between the eye and the bin's inside, which are glass, or the others and the floor.
 Mesh bin_walls(const scene::Bin& bin, Wall kind, const View& view, const Fineness& fineness) {
   Mesh walls;
   for (const scene::BinPart& part : scene::bin_parts(bin)) {
-    const scene::Box bounds = part.bounds_in_world();
-    const bool upright = bounds.max().z() > 0.0;
-    const Vec3 outward = Vec3(bounds.center().x(), bounds.center().y(), 0.0).normalized();
-    const bool hides = upright && outward.dot(view.backward) > kGlassCosine;
+    const bool hides = hides_inside(part.bounds_in_world(), view);
     if (hides == (kind == Wall::glass)) add_part(part, Vec3::Zero(), fineness, walls);
   }
+  std::vector<scene::Triangle> triangles = scene::mesh_triangles(bin);
+  std::erase_if(triangles, [&](const scene::Triangle& triangle) {
+    scene::Box bounds;
+    for (const Vec3& corner : triangle.corners) bounds.extend(corner);
+    return hides_inside(bounds, view) != (kind == Wall::glass);
+  });
+  add_triangles(triangles, Vec3::Zero(), view.eye, walls);
   return walls;
 }
 
