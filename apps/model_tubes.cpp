@@ -102,9 +102,13 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->delimiter(',')
       ->expected(6)
       ->type_name("X,Y,Z,ROLL,PITCH,YAW");
-  app.add_option("--viewpoint", arguments.viewpoint, "Where the scanner stood, metres; without it, as the file says")
+  app.add_option(
+         "--viewpoint", arguments.viewpoint,
+         "Where the scanner stood, metres; of a merged cloud once for each source, from 0; without it, as the file "
+         "says, or scene.json")
       ->delimiter(',')
-      ->expected(3)
+      ->type_size(3)
+      ->allow_extra_args(false)
       ->type_name("X,Y,Z");
   app.add_option("--up", arguments.up, "Against gravity, in the cloud's frame; without it, found")
       ->delimiter(',')
@@ -190,13 +194,23 @@ results::ModelConfig resolve_config(const Arguments& arguments) {
   return config;
 }
 
+/// Of several sources; a single viewpoint is the configuration's.
+void tell_viewpoints(results::CloudToModel& input, const Arguments& arguments) {
+  const auto& numbers = arguments.viewpoint;
+  for (std::size_t k = 3; k < numbers.size(); k += 3) {
+    if (k == 3) input.cloud.world_from_sensor.translation() = Vec3(numbers[0], numbers[1], numbers[2]);
+    input.world_from_further_sensors.emplace_back(Eigen::Translation3d(numbers[k], numbers[k + 1], numbers[k + 2]));
+  }
+}
+
 int model_one(const Arguments& arguments) {
   if (!arguments.ratios.empty() || arguments.method == "both" || arguments.keep_clouds || arguments.cases > 0 ||
       !arguments.shard.empty())
     throw_config_error("{} is a file: --ratios, --method both, --cases, --shard and --keep-clouds are for data sets",
                        arguments.input);
   results::ModelConfig config = resolve_config(arguments);
-  const results::CloudToModel input = results::read_cloud_to_model(arguments.input, arguments.scale);
+  results::CloudToModel input = results::read_cloud_to_model(arguments.input, arguments.scale);
+  tell_viewpoints(input, arguments);
   config.modeling.label_all = arguments.full || input.cloud.organized();
   const modeling::ModelingResult result = results::model_cloud(input, config);
   std::error_code error;
@@ -229,6 +243,8 @@ int model_one(const Arguments& arguments) {
 bool is_dataset(const std::string& path) { return is_folder(path) || fs::path(path).extension() == ".tar"; }
 
 results::BatchOptions batch_options(const Arguments& arguments, const results::ModelConfig& config) {
+  if (arguments.viewpoint.size() > 3)
+    throw_config_error("--viewpoint once for each source is for single files; scene.json has a data set's");
   if (arguments.scale != 1.0) throw_config_error("--scale is for single files; data sets are in metres");
   if (arguments.full) throw_config_error("--full is for single files; --keep-clouds writes a data set's clouds");
   if (arguments.ratio && !arguments.ratios.empty()) throw_config_error("--ratio and --ratios say the same: give one");

@@ -37,15 +37,17 @@ Json scene_json(const ModelingResult& result) {
   Json radii = Json::array();
   for (std::size_t k = 0; k < result.radii.size(); ++k)
     radii.push_back({{"radius", rounded(result.radii[k])}, {"error", rounded(result.radius_errors[k])}});
-  return {{"up", place(found.up)},
-          {"up_is_known", found.up_is_known},
-          {"viewpoint", place(found.viewpoint)},
-          {"viewpoint_is_told", found.viewpoint_is_told},
-          {"flat_regions", found.flat_regions},
-          {"bin", found.bin ? bin_json(*found.bin) : Json()},
-          {"radii", radii},
-          {"unexplained", std::round(found.unexplained * 1e4) / 1e4},
-          {"doubts", found.doubts}};
+  Json json = {{"up", place(found.up)},
+               {"up_is_known", found.up_is_known},
+               {"viewpoint", place(found.viewpoint)},
+               {"viewpoint_is_told", found.viewpoint_is_told},
+               {"flat_regions", found.flat_regions},
+               {"bin", found.bin ? bin_json(*found.bin) : Json()},
+               {"radii", radii},
+               {"unexplained", std::round(found.unexplained * 1e4) / 1e4},
+               {"doubts", found.doubts}};
+  for (const Vec3& further : found.further_viewpoints) json["further_viewpoints"].push_back(place(further));
+  return json;
 }
 
 Json tube_json(const TubeModel& tube, std::size_t label, cloud::Color color, std::size_t points) {

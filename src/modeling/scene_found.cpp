@@ -6,6 +6,8 @@
 
 namespace tubebin::modeling {
 
+std::string place_text(const Vec3& p) { return fmt::format("({:.3f}, {:.3f}, {:.3f})", p.x(), p.y(), p.z()); }
+
 void describe_scene(const Background& background, const ViewProjection& projection, const Vec3& told_up,
                     SceneFound& found) {
   found.viewpoint = projection.viewpoint().cast<double>();
@@ -32,15 +34,16 @@ std::string describe_found(const ModelingResult& result) {
         fmt::format("{}{:.2f} +- {:.2f} mm", k > 0 ? ", " : "", result.radii[k] * 1e3, result.radius_errors[k] * 1e3);
   const std::string length =
       result.tube_length > 0.0 ? fmt::format("{:.3f} m", result.tube_length) : std::string("not common");
+  std::string viewpoints = place_text(found.viewpoint);
+  for (const Vec3& further : found.further_viewpoints) viewpoints += ", " + place_text(further);
   const std::string bin =
       found.bin ? fmt::format("bin {:.3f} x {:.3f} x {:.3f} m", found.bin->length, found.bin->width, found.bin->height)
                 : std::string("no bin");
   return fmt::format(
-      "scene: radius {}; length {}; up {} ({:.2f}, {:.2f}, {:.2f}); viewpoint ({:.3f}, {:.3f}, {:.3f}); {} flat regions; "
+      "scene: radius {}; length {}; up {} ({:.2f}, {:.2f}, {:.2f}); viewpoint {}; {} flat regions; "
       "{}; {:.1f} % unexplained",
       radii.empty() ? "none" : radii, length, found.up_is_known ? "along" : "unknown, taken as", found.up.x(),
-      found.up.y(), found.up.z(), found.viewpoint.x(), found.viewpoint.y(), found.viewpoint.z(), found.flat_regions,
-      bin, 100.0 * found.unexplained);
+      found.up.y(), found.up.z(), viewpoints, found.flat_regions, bin, 100.0 * found.unexplained);
 }
 
 void add_doubts(ModelingResult& result) {

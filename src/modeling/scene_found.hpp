@@ -6,6 +6,9 @@
 
 namespace tubebin::modeling {
 
+/// Of metres, as messages have it.
+std::string place_text(const Vec3& p);
+
 /// Up is across the largest region with nothing behind it: floor or table; `told_up` (zero: none) counts instead.
 void describe_scene(const Background& background, const ViewProjection& projection, const Vec3& told_up,
                     SceneFound& found);

@@ -1,5 +1,7 @@
 #include "tubebin/results/model_cloud.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -43,6 +45,32 @@ Pose choose_sensor(const CloudToModel& input, const ModelConfig& config) {
   return pose;
 }
 
+/// Of sources 1, 2, ...
+std::vector<Pose> choose_further_sensors(const CloudToModel& input, const ModelConfig& config) {
+  std::vector<Pose> poses = input.world_from_further_sensors;
+  if (poses.empty() && config.viewpoint.isZero() && input.scene && !input.cloud.sources.empty())
+    for (const scene::Scanner& scanner : input.scene->scene.further_scanners)
+      poses.push_back(scanner.world_from_scanner());
+  return poses;
+}
+
+std::size_t count_sources(const cloud::Cloud& cloud) {
+  return cloud.sources.empty() ? 1 : std::size_t{*std::ranges::max_element(cloud.sources)} + 1;
+}
+
+/// One alone that is not told, the file's, does for any cloud.
+void require_viewpoint_per_source(const CloudToModel& input, const ModelConfig& config, std::size_t viewpoints) {
+  if (viewpoints == 1 && config.viewpoint.isZero()) return;
+  if (viewpoints > 1 && input.cloud.sources.empty())
+    throw_config_error(
+        "{}: has no field source, and {} viewpoints are told; valid: one, or a cloud whose points say which scanner "
+        "saw them",
+        input.path, viewpoints);
+  if (const std::size_t sources = count_sources(input.cloud); sources > viewpoints)
+    throw_config_error("{}: has {} sources, and the viewpoints of {} are told; valid: one for each source, from 0",
+                       input.path, sources, viewpoints);
+}
+
 /// Places in `result` in the order of the input's points.
 std::vector<std::size_t> input_order(const modeling::ModelingResult& result) {
   std::vector<std::size_t> order(result.source.size());
@@ -71,13 +99,21 @@ modeling::ModelingResult on_positions(const CloudToModel& input, const ModelConf
   if (std::none_of(input.cloud.points.begin(), input.cloud.points.end(), cloud::is_finite))
     throw_io_error("{}: has no finite point", input.path);
   require_near(input);
-  const modeling::ModelingInput positions{.points = input.cloud.points,
-                                          .world_from_sensor = choose_sensor(input, config),
-                                          .bin = choose_bin(input, config),
-                                          .world_from_bin = choose_bin_pose(config),
-                                          .width = input.cloud.height > 1 ? input.cloud.width : 0};
+  modeling::ModelingInput positions{.points = input.cloud.points,
+                                    .world_from_sensor = choose_sensor(input, config),
+                                    .world_from_further_sensors = choose_further_sensors(input, config),
+                                    .bin = choose_bin(input, config),
+                                    .world_from_bin = choose_bin_pose(config),
+                                    .width = input.cloud.height > 1 ? input.cloud.width : 0};
+  const std::size_t viewpoints = 1 + positions.world_from_further_sensors.size(), sources = count_sources(input.cloud);
+  require_viewpoint_per_source(input, config, viewpoints);
+  if (viewpoints > 1) positions.sources = input.cloud.sources;
   try {
-    return work(positions);
+    modeling::ModelingResult result = work(positions);
+    if (sources > viewpoints)
+      result.found.doubts.push_back(fmt::format(
+          "the cloud has {} sources and the viewpoint of one: where did the others stand (--viewpoint)?", sources));
+    return result;
   } catch (const IoError& error) {
     throw IoError(input.path + ": " + error.what());
   } catch (const std::bad_alloc&) {

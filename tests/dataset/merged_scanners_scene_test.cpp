@@ -64,6 +64,27 @@ TEST_F(MergedScanners, AreVerifiedModelledAndEvaluated) {
   EXPECT_EQ(filtered.sources.size(), filtered.size());
 }
 
+TEST_F(MergedScanners, AViewpointIsToldForEachSource) {
+  ASSERT_EQ(generate(two_scanners()).exit_code, 0);
+  fs::copy_file(folder_ / "data/Q3/001/cloud.pcd", folder_ / "alone.pcd");
+  const auto model = [&](std::vector<std::string> viewpoints) {
+    std::vector<std::string> command = {program_path("model_tubes")};
+    for (const std::string& viewpoint : viewpoints) command.insert(command.end(), {"--viewpoint", viewpoint});
+    command.insert(command.end(), {folder_ / "alone.pcd", "--output", folder_ / "model"});
+    return Program(command).wait();
+  };
+  const ProgramResult told = model({"0,0,2", "0.9,0,1.7"});
+  EXPECT_EQ(told.exit_code, 0) << told.error;
+  EXPECT_THAT(told.out, HasSubstr("viewpoint (0.000, 0.000, 2.000), (0.900, 0.000, 1.700)"));
+  expect_schema("model.schema.json", folder_ / "model/model.json");
+  EXPECT_THAT(model({"0,0,2"}).error, HasSubstr("has 2 sources, and the viewpoints of 1 are told"));
+  EXPECT_THAT(model({}).error, HasSubstr("2 sources and the viewpoint of one"));
+  cloud::Cloud cloud = cloud::read_cloud(folder_ / "alone.pcd");
+  cloud.sources.clear();
+  cloud::write_cloud(folder_ / "alone.pcd", cloud, cloud::CloudFormat::pcd_binary);
+  EXPECT_THAT(model({"0,0,2", "0.9,0,1.7"}).error, HasSubstr("has no field source, and 2 viewpoints are told"));
+}
+
 TEST_F(MergedScanners, ExportsShowTheFirstScannersImage) {
   ASSERT_EQ(generate(two_scanners()).exit_code, 0);
   for (const char* format : {"bop", "coco", "npz", "ply", "sdf"}) {

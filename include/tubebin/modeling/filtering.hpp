@@ -25,12 +25,16 @@ struct FilteredCloud {
   std::vector<cloud::Point> normals;  ///< unit, toward the viewpoint; zero where a point has too few neighbours; none
                                       ///< until they are estimated
   double spacing = 0.0;               ///< metres between neighbours: the root of the area that a point stands for
+  std::vector<cloud::Point> viewpoints = {};  ///< of each point, metres; none: all the projection's
 };
 
 /// The filtered cloud, yet without normals: of the points at `indices`, all that may be the tubes', a random part stays.
 /// Throws IoError where no point is left.
 FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, std::vector<std::uint32_t> indices,
                      const FilteringOptions& options, std::uint64_t seed);
+
+/// Where the scanner stood that saw most of the points at `indices`, metres. `first`: of the projection.
+Vec3 viewpoint_of(const FilteredCloud& cloud, std::span<const std::uint32_t> indices, const ViewProjection& first);
 
 /// Estimates the cloud's normals. `radius`: of the tubes, metres; 0 where it is not known.
 void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double radius);

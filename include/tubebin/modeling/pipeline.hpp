@@ -68,14 +68,15 @@ struct BinFound {
 
 /// What the scene was found to be, and what looks wrong about it.
 struct SceneFound {
-  Vec3 up = Vec3::UnitZ();          ///< unit
-  bool up_is_known = false;         ///< told, or a support was found
-  Vec3 viewpoint = Vec3::Zero();    ///< metres
-  bool viewpoint_is_told = true;    ///< else found from the grid of an organized cloud
-  std::size_t flat_regions = 0;     ///< set aside as floor, walls and other obstacles
-  std::optional<BinFound> bin;      ///< where the cloud shows one; nothing else rests on it
-  double unexplained = 0.0;         ///< part of the filtered points that no tube explains
-  std::vector<std::string> doubts;  ///< why the result may not be trusted, as sentences
+  Vec3 up = Vec3::UnitZ();                    ///< unit
+  bool up_is_known = false;                   ///< told, or a support was found
+  Vec3 viewpoint = Vec3::Zero();              ///< metres, of source 0
+  std::vector<Vec3> further_viewpoints = {};  ///< of the other sources
+  bool viewpoint_is_told = true;              ///< else found from the grid of an organized cloud
+  std::size_t flat_regions = 0;               ///< set aside as floor, walls and other obstacles
+  std::optional<BinFound> bin;                ///< where the cloud shows one; nothing else rests on it
+  double unexplained = 0.0;                   ///< part of the filtered points that no tube explains
+  std::vector<std::string> doubts;            ///< why the result may not be trusted, as sentences
 };
 
 struct ModelingResult {

@@ -67,13 +67,16 @@ class RangeImage {
   /// `cell` is the cells' size in the plane of the projection. Points that are not finite are left out.
   RangeImage(const ViewProjection& projection, std::span<const cloud::Point> points, float cell);
 
+  /// In ascending order of what counts where several scanners look: empty is what one of them saw through, hidden what is
+  /// hidden from all.
   enum class Evidence {
-    hidden,   ///< the scanner measured something nearer: what is at the point cannot be seen
-    surface,  ///< the scanner measured a surface at the point, within the tolerance
-    empty,    ///< the scanner saw through the point: nothing is there
-    no_data,  ///< the scanner measured nothing in this direction: nothing is in its reach, or it was left out
+    beyond,   ///< the scan does not reach there, and is no picture: nothing was measured
+    outside,  ///< the scan is a picture that does not reach there
     missing,  ///< the scanner measured nothing there, and all around it: it failed
-    outside   ///< the scan is a picture that does not reach there
+    hidden,   ///< the scanner measured something nearer: what is at the point cannot be seen
+    no_data,  ///< the scanner measured nothing in this direction: nothing is in its reach, or it was left out
+    surface,  ///< the scanner measured a surface at the point, within the tolerance
+    empty     ///< the scanner saw through the point: nothing is there
   };
   /// What the scan says about a surface at `point`.
   Evidence evidence(const cloud::Point& point, float tolerance) const;

@@ -39,6 +39,8 @@ struct CloudToModel {
   std::optional<scene::SceneRecord> scene;
   scene::InputHashes hashes;
   double read_seconds = 0.0;
+  /// Told of sources 1, 2, ... of a merged cloud, while its world_from_sensor is source 0's; none: as scene.json says.
+  std::vector<Pose> world_from_further_sensors = {};
 };
 
 /// Reads the cloud, its coordinates times `scale`, and scene.json in its folder if there is one. Throws IoError.
@@ -47,7 +49,8 @@ CloudToModel read_cloud_to_model(const std::string& path, double scale = 1.0);
 /// The same of a scene of a data set. Throws IoError, too, where scene.json says that it is of another scene.
 CloudToModel read_cloud_to_model(const scene::DatasetFiles& files, const CloudFile& cloud);
 
-/// Models the cloud: its positions, its viewpoint and the scene's bin, nothing else of what is there. Throws IoError.
+/// Models the cloud: its positions, its viewpoint or, with its sources, those of several scanners, and the scene's bin,
+/// nothing else of what is there. Throws IoError, and ConfigError where viewpoints are told and not one for each source.
 modeling::ModelingResult model_cloud(const CloudToModel& input, const ModelConfig& config);
 
 /// Labels the cloud's filtered points by tubes that model_cloud found in it (modeling::label_tubes). Throws IoError.

@@ -27,18 +27,22 @@ std::vector<SurfacePoint> loose_points(const FilteredCloud& cloud, const std::ve
 std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vector<Segment>& segments,
                                     const ViewProjection& projection, double radius) {
   const std::vector<SurfacePoint> loose = loose_points(cloud, segments);
-  const Vec3 viewpoint = projection.viewpoint().cast<double>();
   std::vector<TubePiece> pieces;
   for (const Segment& segment : segments)
-    for (const Stretch& stretch : split_branches(cloud, segment, radius))
+    for (const Stretch& stretch : split_branches(cloud, segment, radius)) {
+      const Vec3 viewpoint = viewpoint_of(cloud, stretch.segment, projection);
       if (auto piece = fit_centerline(cloud, stretch, loose, radius, viewpoint)) pieces.push_back(std::move(*piece));
+    }
   return pieces;
 }
 
 /// The selected points as a cloud of their own; `source` are their places in `cloud`.
 FilteredCloud part_of(const FilteredCloud& cloud, Segment selected, const ViewProjection& projection, double radius) {
   FilteredCloud part{.source = std::move(selected), .points = {}, .normals = {}, .spacing = cloud.spacing};
-  for (const std::uint32_t i : part.source) part.points.push_back(cloud.points[i]);
+  for (const std::uint32_t i : part.source) {
+    part.points.push_back(cloud.points[i]);
+    if (!cloud.viewpoints.empty()) part.viewpoints.push_back(cloud.viewpoints[i]);
+  }
   add_normals(part, projection, radius);
   return part;
 }

@@ -94,7 +94,7 @@ class ClassFinder {
     for (int round = 0; round < 2; ++round) {
       // Where points are sparse, normals from as many as a known radius would not let in are too flat.
       if (reach(cloud, radius) < 0.9 * reach(cloud, round == 0 ? 0.0 : 2.0 * radius))
-        cloud.normals = estimate_normals(projection_, cloud.points, reach(cloud, radius));
+        cloud.normals = estimate_normals(projection_, cloud.points, reach(cloud, radius), 1, cloud.viewpoints);
       const double refined = refined_radius(cloud, radius);
       if (refined <= 0.0) return {};
       const bool is_settled = std::abs(refined - radius) < 0.05 * radius;
@@ -120,10 +120,10 @@ class ClassFinder {
     std::ranges::sort(segments, [](const Segment& a, const Segment& b) { return a.size() > b.size(); });
     if (segments.size() > kSegments) segments.resize(kSegments);
     const OcclusionTest occlusion = occlusion_.with_radius(radius);
-    const Vec3 viewpoint = projection_.viewpoint().cast<double>();
     std::vector<TubePiece> pieces;
     for (const Segment& segment : segments) {
-      auto piece = fit_centerline(sample, {segment, VoteGraph(sample, segment, radius)}, {}, radius, viewpoint);
+      auto piece = fit_centerline(sample, {segment, VoteGraph(sample, segment, radius)}, {}, radius,
+                                  viewpoint_of(sample, segment, projection_));
       if (!piece) continue;
       const PieceEvidence evidence = examine_piece(*piece, sample.points, occlusion);
       if (std::abs(evidence.curvature - 1.0) > 0.4 || evidence.empty > 0.3) continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "modeling/input/source_views.hpp"
 #include "modeling/input/view_grid.hpp"
 
 namespace tubebin::modeling {
@@ -28,23 +29,23 @@ bool is_solid(const FlatRegion& region, std::span<const cloud::Point> points, do
 Background find_background(const ModelingInput& input, const ViewProjection& projection) {
   Background background;
   std::vector<std::uint32_t> finite;
-  std::vector<cloud::Point> points;
-  for (std::uint32_t i = 0; i < input.points.size(); ++i) {
-    if (!cloud::is_finite(input.points[i])) continue;
-    finite.push_back(i);
-    points.push_back(input.points[i]);
-  }
-  const ViewProjection::Images images = projection.images(points);
-  background.spacing = estimate_spacing(images);
-  background.regions = find_flat_regions(projection, points, images, background.spacing);
-  for (FlatRegion& region : background.regions) region.is_solid = is_solid(region, points, background.spacing);
+  for (std::uint32_t i = 0; i < input.points.size(); ++i)
+    if (cloud::is_finite(input.points[i])) finite.push_back(i);
+  const std::vector<SourceView> views = views_of(input, projection, finite);
+  background.spacing = spacing_of(views);
+  for (const SourceView& view : views)
+    for (FlatRegion& region : find_flat_regions(view.projection, view.points, view.images, view.spacing)) {
+      region.is_solid = is_solid(region, view.points, view.spacing);
+      background.regions.push_back(region);
+    }
+  std::ranges::stable_sort(background.regions, std::ranges::greater(), &FlatRegion::area);
   if (!background.regions.empty()) background.noise = background.regions.front().noise;
   // A region's outermost blocks are not all its own.
   const double margin = 5.0 * background.spacing;
-  for (std::size_t k = 0; k < finite.size(); ++k) {
-    const Vec3 p = points[k].cast<double>();
+  for (const std::uint32_t i : finite) {
+    const Vec3 p = input.points[i].cast<double>();
     const bool is_flat = std::ranges::any_of(background.regions, [&](const auto& r) { return r.holds(p, margin); });
-    (is_flat ? background.set_aside : background.foreground).push_back(finite[k]);
+    (is_flat ? background.set_aside : background.foreground).push_back(i);
   }
   return background;
 }

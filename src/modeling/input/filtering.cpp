@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "modeling/input/normals.hpp"
+#include "modeling/input/source_views.hpp"
 #include "modeling/input/view_grid.hpp"
 #include "tubebin/core/error.hpp"
 
@@ -66,11 +67,11 @@ std::vector<std::uint32_t> downsample(std::span<const cloud::Point> points, std:
   return indices;
 }
 
-std::vector<std::uint32_t> remove_outliers(const ViewProjection& projection, std::span<const cloud::Point> points,
+std::vector<std::uint32_t> remove_outliers(const ModelingInput& input, const ViewProjection& projection,
                                            const std::vector<std::uint32_t>& indices) {
   std::vector<cloud::Point> selected;
-  for (const std::uint32_t i : indices) selected.push_back(points[i]);
-  const double reach = 3.0 * estimate_spacing(projection.images(selected));
+  for (const std::uint32_t i : indices) selected.push_back(input.points[i]);
+  const double reach = 3.0 * spacing_of(views_of(input, projection, indices));
   const std::vector<int> counts = count_neighbors(projection, selected, reach);
   // Within three spacings lie some 28 points of a surface, half of them at its edges.
   constexpr int kLeast = 9;
@@ -99,7 +100,7 @@ ViewProjection view_of(const ModelingInput& input) {
 
 FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, std::vector<std::uint32_t> indices,
                      const FilteringOptions& options, std::uint64_t seed) {
-  if (options.remove_outliers) indices = remove_outliers(projection, input.points, indices);
+  if (options.remove_outliers) indices = remove_outliers(input, projection, indices);
   if (indices.empty()) throw IoError("no point lies in the bin: is its place right, and is the cloud in metres?");
   indices = downsample(input.points, std::move(indices), options.ratio, seed);
 
@@ -108,18 +109,30 @@ FilteredCloud filter(const ModelingInput& input, const ViewProjection& projectio
   for (const std::uint32_t i : indices) points.push_back(input.points[i]);
   FilteredCloud cloud;
   ViewProjection::Images images = projection.images(points);
-  cloud.spacing = estimate_spacing(images);
+  cloud.spacing = input.sources.empty() ? estimate_spacing(images) : spacing_of(views_of(input, projection, indices));
   const double range = double(images.range.front());
   const ViewGrid grid(std::move(images), points, static_cast<float>(std::max(2.0 * cloud.spacing / range, 1e-6)));
   for (const std::uint32_t k : grid.order()) {
     cloud.source.push_back(indices[k]);
     cloud.points.push_back(points[k]);
   }
+  cloud.viewpoints = viewpoints_of(input, cloud.source);
   return cloud;
 }
 
+Vec3 viewpoint_of(const FilteredCloud& cloud, std::span<const std::uint32_t> indices, const ViewProjection& first) {
+  if (cloud.viewpoints.empty() || indices.empty()) return first.viewpoint().cast<double>();
+  std::vector<std::pair<std::size_t, cloud::Point>> counts;  // points of each viewpoint
+  for (const std::uint32_t i : indices) {
+    const auto known = std::ranges::find(counts, cloud.viewpoints[i], [](const auto& count) { return count.second; });
+    if (known != counts.end()) ++known->first;
+    else counts.emplace_back(1, cloud.viewpoints[i]);
+  }
+  return std::ranges::max_element(counts, {}, [](const auto& count) { return count.first; })->second.cast<double>();
+}
+
 void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double radius) {
-  cloud.normals = estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, radius));
+  cloud.normals = estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, radius), 1, cloud.viewpoints);
 }
 
 FilteredCloud thinned(const FilteredCloud& cloud, double apart, const ViewProjection& projection, double radius) {
@@ -135,9 +148,11 @@ FilteredCloud thinned(const FilteredCloud& cloud, double apart, const ViewProjec
   FilteredCloud sample{.source = select(cloud.source),
                        .points = select(cloud.points),
                        .normals = select(cloud.normals),
-                       .spacing = cloud.spacing * std::sqrt(static_cast<double>(stride))};
+                       .spacing = cloud.spacing * std::sqrt(static_cast<double>(stride)),
+                       .viewpoints = select(cloud.viewpoints)};
   if (cloud.normals.empty())
-    sample.normals = estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, radius), stride);
+    sample.normals =
+        estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, radius), stride, cloud.viewpoints);
   return sample;
 }
 

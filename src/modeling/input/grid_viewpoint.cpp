@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "modeling/scene_found.hpp"
 #include "tubebin/core/geometry.hpp"
 
 namespace tubebin::modeling {
@@ -40,8 +41,6 @@ Vec3 middle_of(const std::vector<Sample>& samples) {
   for (const Sample& sample : samples) sum += sample.point;
   return sum / static_cast<double>(samples.size());
 }
-
-std::string place_text(const Vec3& p) { return fmt::format("({:.3f}, {:.3f}, {:.3f})", p.x(), p.y(), p.z()); }
 
 // Direct linear transform (Hartley and Zisserman 2004, "Multiple View Geometry", 7.1): the camera matrix P with pixel ~ P
 // point is the direction in which the equations have the least squares; its null vector is where the camera stands.

@@ -179,7 +179,8 @@ TUBEBIN_WIDE void plane_normals(const std::array<Moments, kPlanes>& moments,
 }  // namespace
 
 std::vector<cloud::Point> estimate_normals(const ViewProjection& projection, std::span<const cloud::Point> points,
-                                           double radius, std::size_t stride) {
+                                           double radius, std::size_t stride,
+                                           std::span<const cloud::Point> viewpoints) {
   std::vector<cloud::Point> normals((points.size() + stride - 1) / stride, cloud::Point::Zero());
   if (points.empty()) return normals;
   Neighborhoods neighborhoods(projection, points, radius);
@@ -195,7 +196,7 @@ std::vector<cloud::Point> estimate_normals(const ViewProjection& projection, std
       for (std::size_t k = 0; k < kPlanes; ++k) {
         const std::uint32_t i = left[first + std::min(k, count - 1)];
         moments[k] = neighborhoods.around(i, wider);
-        to_viewpoint[k] = projection.viewpoint() - points[i];
+        to_viewpoint[k] = (viewpoints.empty() ? projection.viewpoint() : viewpoints[i]) - points[i];
       }
       plane_normals(moments, to_viewpoint, found);
       for (std::size_t k = 0; k < count; ++k) normals[left[first + k] / stride] = found[k];

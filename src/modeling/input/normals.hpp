@@ -10,9 +10,10 @@ namespace tubebin::modeling {
 
 /// Unit normals toward the viewpoint by least-squares planes through the neighbours within `radius` metres; zero where
 /// a point has fewer than five neighbours or they do not span a plane. Of every stride-th point, beginning with the
-/// first, from its neighbours among all points.
+/// first, from its neighbours among all points. `viewpoints`: of each point; none: all the projection's.
 std::vector<cloud::Point> estimate_normals(const ViewProjection& projection, std::span<const cloud::Point> points,
-                                           double radius, std::size_t stride = 1);
+                                           double radius, std::size_t stride = 1,
+                                           std::span<const cloud::Point> viewpoints = {});
 
 /// Points within `radius` metres of each point, itself included.
 std::vector<int> count_neighbors(const ViewProjection& projection, std::span<const cloud::Point> points, double radius);

@@ -118,7 +118,7 @@ RangeImage::Evidence RangeImage::evidence(const cloud::Point& point, float toler
   const float column = (image.u - u_min_) * inverse_cell_;
   const float row = (image.v - v_min_) * inverse_cell_;
   if (!(column >= 0.0f && row >= 0.0f && column < static_cast<float>(columns_) && row < static_cast<float>(rows_)))
-    return fills_picture_ ? Evidence::outside : Evidence::empty;
+    return fills_picture_ ? Evidence::outside : Evidence::beyond;
   const float nearest = nearest_[static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column))];
   if (std::isinf(nearest)) return nearest > 0.0f ? Evidence::no_data : Evidence::missing;
   if (nearest < image.range - tolerance) return Evidence::hidden;

@@ -1,18 +1,23 @@
 #include "modeling/joining/occlusion.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "modeling/input/source_views.hpp"
 #include "modeling/median.hpp"
 
 namespace tubebin::modeling {
 namespace {
 
-float view_cell(const ModelingInput& input, const ViewProjection& projection, double spacing) {
+/// Places across a tube that are looked at together.
+constexpr std::size_t kMostAcross = 3;
+
+float view_cell(std::span<const cloud::Point> points, const ViewProjection& projection, double spacing) {
   constexpr std::size_t kSample = 1000;
   std::vector<float> ranges;
-  for (std::size_t i = 0; i < input.points.size(); i += input.points.size() / kSample + 1)
-    if (cloud::is_finite(input.points[i])) ranges.push_back((input.points[i] - projection.viewpoint()).norm());
+  for (std::size_t i = 0; i < points.size(); i += points.size() / kSample + 1)
+    if (cloud::is_finite(points[i])) ranges.push_back((points[i] - projection.viewpoint()).norm());
   // Two spacings a cell: few cells of a surface are empty by chance, and a tube's gap is many cells wide still.
   return static_cast<float>(2.0 * spacing / (ranges.empty() ? 1.0 : double(median(ranges))));
 }
@@ -21,12 +26,28 @@ float view_cell(const ModelingInput& input, const ViewProjection& projection, do
 
 OcclusionTest::OcclusionTest(const ModelingInput& input, const ViewProjection& projection, double spacing,
                              double radius)
-    : viewpoint_(projection.viewpoint().cast<double>()),
-      radius_(radius),
-      image_(std::make_shared<RangeImage>(projection, input.points, view_cell(input, projection, spacing))),
+    : radius_(radius),
+      views_(std::make_shared<std::vector<View>>(views(input, projection, spacing))),
       bin_(input.bin),
       bin_faces_(bin_ ? scene::inner_faces(*bin_) : std::vector<scene::InnerFace>()),
       bin_from_world_(input.world_from_bin.inverse()) {}
+
+std::vector<OcclusionTest::View> OcclusionTest::views(const ModelingInput& input, const ViewProjection& projection,
+                                                      double spacing) {
+  std::vector<View> views;
+  const auto add = [&](const ViewProjection& of_view, std::span<const cloud::Point> points, double apart) {
+    views.push_back({of_view.viewpoint().cast<double>(), {of_view, points, view_cell(points, of_view, apart)}});
+  };
+  if (input.sources.empty()) {
+    add(projection, input.points, spacing);
+    return views;
+  }
+  std::vector<std::uint32_t> finite;
+  for (std::uint32_t i = 0; i < input.points.size(); ++i)
+    if (cloud::is_finite(input.points[i])) finite.push_back(i);
+  for (const SourceView& view : views_of(input, projection, finite)) add(view.projection, view.points, view.spacing);
+  return views;
+}
 
 bool OcclusionTest::in_solid(const Vec3& point) const {
   if (std::ranges::any_of(solids_, [&](const FlatRegion& solid) {
@@ -61,36 +82,42 @@ OcclusionTest OcclusionTest::with_radius(double radius) const {
   return other;
 }
 
-/// At points of the surface so many radii to the right and left of the centreline, as the scanner sees it.
+/// At points of the surface so many radii to the right and left of the centreline, as each scanner sees it.
 StretchEvidence OcclusionTest::evidence_across(const Vec3& center, const Vec3& direction,
                                                std::span<const double> across) const {
-  StretchEvidence sum;
-  const Vec3 to_viewpoint = viewpoint_ - center;
-  const Vec3 up = (to_viewpoint - to_viewpoint.dot(direction) * direction).normalized();
-  const Vec3 side = direction.cross(up);
-  // Half a radius of tolerance is far above the noise, and far below the tube's thickness by which a floor or another
-  // tube lies behind.
-  for (const double x : across) {
-    const Vec3 surface = center + radius_ * (x * side + std::sqrt(1.0 - x * x) * up);
-    switch (image_->evidence(surface.cast<float>(), static_cast<float>(radius_ / 2.0))) {
-      case RangeImage::Evidence::hidden:
-        sum.hidden += 1.0;
-        break;
-      case RangeImage::Evidence::surface:
-        sum.surface += 1.0;
-        break;
-      case RangeImage::Evidence::empty:
-        sum.empty += 1.0;
-        break;
-      case RangeImage::Evidence::no_data:
-        sum.no_data += 1.0;
-        break;
-      case RangeImage::Evidence::missing:
-      case RangeImage::Evidence::outside:
-        sum.hidden += 1.0;
-        break;
+  using Evidence = RangeImage::Evidence;
+  std::array<Evidence, kMostAcross> seen;
+  seen.fill(Evidence::beyond);
+  for (const View& view : *views_) {
+    const Vec3 to_viewpoint = view.viewpoint - center;
+    const Vec3 up = (to_viewpoint - to_viewpoint.dot(direction) * direction).normalized();
+    const Vec3 side = direction.cross(up);
+    // Half a radius of tolerance is far above the noise, and far below the tube's thickness by which a floor or another
+    // tube lies behind.
+    for (std::size_t k = 0; k < across.size(); ++k) {
+      const double x = across[k];
+      const Vec3 surface = center + radius_ * (x * side + std::sqrt(1.0 - x * x) * up);
+      seen[k] = std::max(seen[k], view.image.evidence(surface.cast<float>(), static_cast<float>(radius_ / 2.0)));
     }
   }
+  StretchEvidence sum;
+  for (const Evidence evidence : std::span(seen).first(across.size())) switch (evidence) {
+      case Evidence::outside:
+      case Evidence::missing:
+      case Evidence::hidden:
+        sum.hidden += 1.0;
+        break;
+      case Evidence::no_data:
+        sum.no_data += 1.0;
+        break;
+      case Evidence::surface:
+        sum.surface += 1.0;
+        break;
+      case Evidence::beyond:
+      case Evidence::empty:
+        sum.empty += 1.0;
+        break;
+    }
   const auto count = static_cast<double>(across.size());
   return {sum.hidden / count, sum.surface / count, sum.empty / count, sum.no_data / count};
 }

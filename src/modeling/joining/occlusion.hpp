@@ -21,7 +21,8 @@ struct StretchEvidence {
 
 class OcclusionTest {
  public:
-  /// `spacing`: metres between neighbouring points of the whole input at their median range.
+  /// `spacing`: metres between neighbouring points of the whole input at their median range; of a merged cloud each
+  /// scanner's points show its own. `projection`: of the first scanner.
   OcclusionTest(const ModelingInput& input, const ViewProjection& projection, double spacing, double radius);
   /// Regions with nothing behind them: no tube is there either.
   void add_solids(std::vector<FlatRegion> regions) { solids_ = std::move(regions); }
@@ -42,9 +43,15 @@ class OcclusionTest {
   StretchEvidence evidence_across(const Vec3& center, const Vec3& direction, std::span<const double> across) const;
   bool in_solid(const Vec3& point) const;
 
-  Vec3 viewpoint_;
+  /// The scan as one of the scanners saw it.
+  struct View {
+    Vec3 viewpoint;
+    RangeImage image;
+  };
+  static std::vector<View> views(const ModelingInput& input, const ViewProjection& projection, double spacing);
+
   double radius_;
-  std::shared_ptr<const RangeImage> image_;
+  std::shared_ptr<const std::vector<View>> views_;
   std::optional<scene::Bin> bin_;
   std::vector<scene::InnerFace> bin_faces_;
   std::vector<FlatRegion> solids_;
