@@ -217,6 +217,13 @@ class TreeJoiner {
   std::size_t budget_ = 0;
 };
 
+/// Whether the place on the path's centreline is on a stretch that nobody saw.
+bool is_bridged(const TubePath& path, const Vec3& place) {
+  for (std::size_t k = 0; k < path.bridged.size(); ++k)
+    if (path.bridged[k] && distance_to_polyline(place, {path.nodes[k], path.nodes[k + 1]}) < 1e-9) return true;
+  return false;
+}
+
 std::vector<TubePiece> pieces_of(const std::vector<TubePath>& paths, double radius) {
   std::vector<TubePiece> pieces;
   for (const TubePath& path : paths) pieces.push_back({.nodes = path.nodes, .radius = radius, .points = {}});
@@ -253,7 +260,9 @@ std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double 
 
 std::vector<TubeModel> join_sure_branches(const std::vector<TubePath>& paths, double radius, double tube_length) {
   const std::vector<TubePiece> pieces = pieces_of(paths, radius);
-  const TreeJoiner joiner(pieces, {}, find_sure_links(pieces, tube_length), radius);
+  std::vector<BranchLink> links = find_sure_links(pieces, tube_length);
+  std::erase_if(links, [&](const BranchLink& link) { return is_bridged(paths[link.other], link.place); });
+  const TreeJoiner joiner(pieces, {}, std::move(links), radius);
   std::vector<TubeModel> tubes;
   for (Tree& tree : joiner.likely_trees(0.0)) {
     tree.whole_odds = CoverMargins::kMost;

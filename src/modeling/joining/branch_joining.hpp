@@ -14,8 +14,8 @@ namespace tubebin::modeling {
 std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double radius, const OcclusionTest& occlusion,
                                      double tube_length);
 
-/// The same where few tubes branch or none: paths that surely start on another's side (find_sure_links) are branches of it,
-/// and all others tubes by themselves.
+/// The same where few tubes branch or none: paths that surely start on another's side (find_sure_links), where that one is
+/// in sight, are branches of it, and all others tubes by themselves.
 std::vector<TubeModel> join_sure_branches(const std::vector<TubePath>& paths, double radius, double tube_length);
 
 }  // namespace tubebin::modeling
