@@ -6,7 +6,26 @@
 namespace tubebin::physics {
 namespace {
 
-using Triangles = std::vector<const scene::Triangle*>;
+/// A triangle and a ball around it, which tells fast that it is out of reach.
+struct NearTriangle {
+  explicit NearTriangle(const scene::Triangle& near) : triangle(&near) {
+    const auto& [a, b, c] = near.corners;
+    center = (a + b + c) / 3.0;
+    for (const Vec3& corner : near.corners) reach = std::max(reach, (corner - center).norm());
+  }
+
+  const scene::Triangle* triangle;
+  Vec3 center;
+  double reach = 0.0;  // metres
+};
+
+using Triangles = std::vector<NearTriangle>;
+
+double distance_to(const Segment& segment, const Vec3& point) {
+  const Vec3 along = segment.b - segment.a;
+  const double t = (point - segment.a).dot(along) / std::max(along.squaredNorm(), 1e-18);
+  return (segment.at(std::clamp(t, 0.0, 1.0)) - point).norm();
+}
 
 /// Metres by which a place may be beside a triangle and still be on it.
 constexpr double kOnTriangle = 1e-7;
@@ -18,9 +37,10 @@ constexpr double kHeldBeyondEdge = 0.001;  // metres
 /// goes on there, or in a corner, and the neighbour is what the body touches.
 bool is_nearest_around(const Triangles& near, const Vec3& place, const Vec3& normal) {
   constexpr double kSine = 1e-4;
-  return std::ranges::none_of(near, [&](const scene::Triangle* triangle) {
-    if ((triangle->project(place) - place).squaredNorm() > kOnTriangle * kOnTriangle) return false;
-    return std::ranges::any_of(triangle->corners, [&](const Vec3& corner) {
+  return std::ranges::none_of(near, [&](const NearTriangle& other) {
+    if ((other.center - place).norm() > other.reach + kOnTriangle) return false;
+    if ((other.triangle->project(place) - place).squaredNorm() > kOnTriangle * kOnTriangle) return false;
+    return std::ranges::any_of(other.triangle->corners, [&](const Vec3& corner) {
       const Vec3 along = corner - place;
       return along.dot(normal) > kSine * along.norm() + kOnTriangle;
     });
@@ -30,21 +50,27 @@ bool is_nearest_around(const Triangles& near, const Vec3& place, const Vec3& nor
 /// One cylinder or joint of a tube against the triangles near it.
 class NearMesh {
  public:
-  NearMesh(const scene::TriangleTree& mesh, const scene::Box& bounds, double depth_min, std::vector<Touch>& out)
+  NearMesh(const scene::TriangleTree& mesh, const scene::Box& bounds, const Segment& axis, double radius,
+           double depth_min, std::vector<Touch>& out)
       : depth_min_(depth_min), out_(out) {
-    const Vec3 margin = Vec3::Constant(-std::min(depth_min, 0.0));
-    mesh.find({bounds.min() - margin, bounds.max() + margin}, near_);
+    const double margin = -std::min(depth_min, 0.0);
+    std::vector<const scene::Triangle*> found;
+    mesh.find({bounds.min() - Vec3::Constant(margin), bounds.max() + Vec3::Constant(margin)}, found);
+    for (const scene::Triangle* triangle : found) {
+      const NearTriangle near(*triangle);
+      if (distance_to(axis, near.center) <= radius + margin + near.reach) near_.push_back(near);
+    }
   }
 
   void add_ball(const Vec3& center, double radius) {
-    for (const scene::Triangle* triangle : near_) add_ball(*triangle, center, radius);
+    for (const NearTriangle& near : near_) add_ball(*near.triangle, center, radius);
   }
 
   void add_cylinder(const CollisionCylinder& cylinder) {
-    for (const scene::Triangle* triangle : near_) {
-      if (cylinder.flat_a) add_rim(*triangle, cylinder, true);
-      if (cylinder.flat_b) add_rim(*triangle, cylinder, false);
-      add_side(*triangle, cylinder);
+    for (const NearTriangle& near : near_) {
+      if (cylinder.flat_a) add_rim(*near.triangle, cylinder, true);
+      if (cylinder.flat_b) add_rim(*near.triangle, cylinder, false);
+      add_side(*near.triangle, cylinder);
     }
   }
 
@@ -105,10 +131,12 @@ void collide(const scene::TriangleTree& mesh, const CollisionTube& tube, double 
   const std::size_t begin = out.size();
   for (const Ball& joint : tube.joints) {
     const Vec3 reach = Vec3::Constant(joint.radius);
-    NearMesh(mesh, {joint.center - reach, joint.center + reach}, depth_min, out).add_ball(joint.center, joint.radius);
+    NearMesh(mesh, {joint.center - reach, joint.center + reach}, {joint.center, joint.center}, joint.radius, depth_min,
+             out)
+        .add_ball(joint.center, joint.radius);
   }
   for (const CollisionCylinder& cylinder : tube.cylinders)
-    NearMesh(mesh, cylinder.bounds, depth_min, out).add_cylinder(cylinder);
+    NearMesh(mesh, cylinder.bounds, cylinder.axis, cylinder.radius, depth_min, out).add_cylinder(cylinder);
   keep_deepest_of_each_spot(begin, 0.5 * tube.radius, out);
 }
 
