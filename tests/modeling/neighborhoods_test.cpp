@@ -76,7 +76,7 @@ TEST(RangeImage, LeavesOutWhatIsNotFinite) {
   EXPECT_EQ(image.evidence({0.0f, 0.0f, -0.1f}, 0.001f), RangeImage::Evidence::hidden);
   EXPECT_EQ(image.evidence({0.0f, 0.0f, 0.1f}, 0.001f), RangeImage::Evidence::empty);
   EXPECT_EQ(RangeImage(view_from_above(), std::span(points).subspan(1, 5), 0.002f).evidence({0.0f, 0.0f, 0.0f}, 0.001f),
-            RangeImage::Evidence::empty);
+            RangeImage::Evidence::beyond);
 }
 
 TEST(Normals, AreThoseOfAnEigensolver) {

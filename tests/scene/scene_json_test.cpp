@@ -225,6 +225,7 @@ TEST(SceneJson, EveryKeyIsInTheSchemaAndTheOtherWayRound) {
   record.further_windows = {record.window};
   record.scene.scanner.effects.projector.enabled = true;  // else the scanner's effects are not there
   record.scene.bin.draft_deg = 3.0;                       // else it is a box
+  record.scene.bin.mesh = "bin.stl";                      // else it has none
   record.scene.surroundings = make_surroundings();
   record.lift = {.lifted = 3, .force = 0.6, .given_up = {2}, .dragged = {1}, .moved = {{2, 0.004}}};
   const json scene = json::parse(format_scene_json(record));
