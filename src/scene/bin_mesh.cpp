@@ -40,8 +40,9 @@ class MeshBuilder {
 
   void check_coordinate(double value, const std::string& place) const {
     if (!(std::abs(value * scale_) <= kMeshReachMax))
-      throw_io_error("{}: {}: {:.9g} is not valid; valid: finite, and at most {} m from the origin after bin.mesh_scale {}",
-                     name_, place, value, kMeshReachMax, scale_);
+      throw_io_error(
+          "{}: {}: {:.9g} is not valid; valid: finite, and at most {} m from the origin after bin.mesh_scale {}", name_,
+          place, value, kMeshReachMax, scale_);
   }
 
   BinMesh build(std::string stl) && {
