@@ -38,13 +38,13 @@ TEST_F(BranchJoining, ATubeThatEndsBesideAnotherIsNoBranchOfIt) {
 
 TEST_F(BranchJoining, AmongTubesOfOneLengthOnlyWhatIsNotAsLongIsABranch) {
   const auto tubes_of_length = [&](double length, double start) {
-    return join_sure_branches(tree(0.3, start), kRadius, length);
+    return join_likely_branches(tree(0.3, start), kRadius, occlusion(), length);
   };
   EXPECT_EQ(tubes_of_length(0.0, 0.5 * kRadius).size(), 1u);
   EXPECT_EQ(tubes_of_length(0.5, 0.5 * kRadius).size(), 1u);
   EXPECT_EQ(tubes_of_length(0.3, 0.5 * kRadius).size(), 2u);  // the trunk is whole
   EXPECT_EQ(tubes_of_length(0.5, 2.1 * kRadius).size(), 2u);
-  EXPECT_TRUE(join_sure_branches({}, kRadius, 0.0).empty());
+  EXPECT_TRUE(join_likely_branches({}, kRadius, occlusion(), 0.0).empty());
 }
 
 /// Under the lid a branch's start is out of sight, and so is whether it is one.

@@ -217,11 +217,14 @@ class TreeJoiner {
   std::size_t budget_ = 0;
 };
 
-/// Whether the place on the path's centreline is on a stretch that nobody saw.
-bool is_bridged(const TubePath& path, const Vec3& place) {
-  for (std::size_t k = 0; k < path.bridged.size(); ++k)
-    if (path.bridged[k] && distance_to_polyline(place, {path.nodes[k], path.nodes[k + 1]}) < 1e-9) return true;
-  return false;
+/// The longest length that three of the paths have to a radius; infinite where there is none.
+double recurring_length(const std::vector<TubePiece>& paths) {
+  std::vector<double> lengths;
+  for (const TubePiece& path : paths) lengths.push_back(path.length());
+  std::sort(lengths.begin(), lengths.end(), std::greater<>());
+  for (std::size_t k = 2; k < lengths.size(); ++k)
+    if (lengths[k - 2] - lengths[k] <= paths.front().radius) return lengths[k - 1];
+  return std::numeric_limits<double>::infinity();
 }
 
 std::vector<TubePiece> pieces_of(const std::vector<TubePath>& paths, double radius) {
@@ -258,14 +261,30 @@ std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double 
   return tubes;
 }
 
-std::vector<TubeModel> join_sure_branches(const std::vector<TubePath>& paths, double radius, double tube_length) {
+std::vector<TubeModel> join_likely_branches(const std::vector<TubePath>& paths, double radius,
+                                            const OcclusionTest& occlusion, double tube_length) {
+  if (paths.empty()) return {};
   const std::vector<TubePiece> pieces = pieces_of(paths, radius);
-  std::vector<BranchLink> links = find_sure_links(pieces, tube_length);
-  std::erase_if(links, [&](const BranchLink& link) { return is_bridged(paths[link.other], link.place); });
-  const TreeJoiner joiner(pieces, {}, std::move(links), radius);
+  const double whole = tube_length > 0.0 ? tube_length : recurring_length(pieces);
+  const auto is_whole = [&](const TubePiece& path) { return std::abs(path.length() - whole) <= radius; };
+  const auto is_no_branch = [&](const BranchLink& link) {
+    const TubePiece &branch = pieces[link.end / 2], &trunk = pieces[link.other];
+    return link.other_end || branch.length() < 4.0 * radius || is_whole(branch) || is_whole(trunk) ||
+           (tube_length > 0.0 && branch.length() + trunk.length() > tube_length + 2.0 * radius);
+  };
+  std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion, 40.0 * radius);
+  // A tube's end that touches another's side looks like a branch, and counts as one only where others do.
+  const auto may_touch = [&](const BranchLink& link) {
+    const double distance = distance_to_polyline(ends[link.end].position, pieces[link.other].nodes);
+    return distance > 0.75 * radius && distance < 1.3 * radius;
+  };
+  std::vector<BranchLink> links = find_branch_links(pieces, ends, occlusion, 0.0);
+  std::erase_if(links, is_no_branch);
+  if (std::ranges::all_of(links, may_touch)) links.clear();
+  const TreeJoiner joiner(pieces, std::move(ends), std::move(links), radius);
   std::vector<TubeModel> tubes;
   for (Tree& tree : joiner.likely_trees(0.0)) {
-    tree.whole_odds = CoverMargins::kMost;
+    tree.whole_odds = tree.links.empty() ? CoverMargins::kMost : std::ranges::min(tree.link_odds);
     tubes.push_back(joiner.tube_of(tree, paths));
   }
   return tubes;

@@ -14,8 +14,10 @@ namespace tubebin::modeling {
 std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double radius, const OcclusionTest& occlusion,
                                      double tube_length);
 
-/// The same where few tubes branch or none: paths that surely start on another's side (find_sure_links), where that one is
-/// in sight, are branches of it, and all others tubes by themselves.
-std::vector<TubeModel> join_sure_branches(const std::vector<TubePath>& paths, double radius, double tube_length);
+/// The same where few tubes branch or none: paths that likelier start on another's side than not are branches of it, and
+/// all others tubes by themselves. A path as long as the tubes have in common (`tube_length`, metres; 0: the longest length
+/// that recurs), is whole, neither a branch nor a trunk; no tube is longer than a common length.
+std::vector<TubeModel> join_likely_branches(const std::vector<TubePath>& paths, double radius,
+                                            const OcclusionTest& occlusion, double tube_length);
 
 }  // namespace tubebin::modeling

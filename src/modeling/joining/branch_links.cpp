@@ -153,23 +153,4 @@ std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, c
   return links;
 }
 
-std::vector<BranchLink> find_sure_links(const std::vector<TubePiece>& paths, double tube_length) {
-  // In radii: overlaps are cut to half of one, and ends fitted to a quarter.
-  constexpr double kNearest = 0.75;
-  const auto is_whole = [&](const TubePiece& path) { return std::abs(path.length() - tube_length) <= path.radius; };
-  std::vector<BranchLink> links;
-  for (std::uint32_t end = 0; end < 2 * paths.size(); ++end)
-    for (std::uint32_t other = 0; other < paths.size(); ++other) {
-      const TubePiece& path = paths[end / 2];
-      if (other == end / 2 || !is_long(path) || is_whole(path) || is_whole(paths[other])) continue;
-      const auto& n = path.nodes;
-      const Vec3 tip = end % 2 == 0 ? n.front() : n.back(), inner = end % 2 == 0 ? n[1] : n[n.size() - 2];
-      const auto place = place_on_side(tip, (tip - inner).normalized(), paths[other].nodes, path.radius);
-      if (!place || (*place - tip).norm() > kNearest * path.radius) continue;
-      links.push_back(
-          {.end = end, .other = other, .place = *place, .length = (*place - tip).norm(), .cost = kOnSideCost});
-    }
-  return links;
-}
-
 }  // namespace tubebin::modeling

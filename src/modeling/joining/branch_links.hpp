@@ -35,9 +35,4 @@ bool show_branches(const std::vector<TubePiece>& pieces, const std::vector<Piece
 std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, const std::vector<PieceEnd>& ends,
                                           const OcclusionTest& occlusion, double cost_limit);
 
-/// Of the branches that start on another's side, those that hardly anything else explains: as long as two diameters, and
-/// nearer to the other's centreline than the end of a tube that touches its side is fitted. A path as long as the tubes
-/// have in common (`tube_length`, metres; 0: none) is whole, and neither a branch nor a trunk.
-std::vector<BranchLink> find_sure_links(const std::vector<TubePiece>& paths, double tube_length);
-
 }  // namespace tubebin::modeling

@@ -10,10 +10,9 @@ namespace tubebin::modeling {
 
 struct Joining {
   std::vector<TubePath> paths;
-  double tube_length = 0.0;  ///< metres: as given, or the common length of the scene's tubes; 0 where there is none
-  bool tubes_branch =
-      false;  ///< enough pieces start on another's side; join_branches then makes tubes of the paths, join_sure_branches else
-  double explained = 0.0;  ///< part of the pieces' length on copies of a shape
+  double tube_length = 0.0;   ///< metres: as given, or the common length of the scene's tubes; 0 where there is none
+  bool tubes_branch = false;  ///< enough pieces start on another's side (show_branches)
+  double explained = 0.0;     ///< part of the pieces' length on copies of a shape
 };
 
 /// Chooses the chains of pieces that explain the scan best: each piece in one tube, joins by their likelihood, tubes of
