@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <queue>
+#include <ranges>
 #include <unordered_map>
 
 #include "modeling/fitting/vote_voxels.hpp"
@@ -18,14 +21,18 @@ namespace {
 constexpr double kLinkCostLimit = 9.0;
 /// A tube shorter than it should be can have other reasons than a missed link: e^-10.
 constexpr double kTreeLengthCostLimit = 10.0;
-constexpr std::size_t kTreesPerPath = 300;
-constexpr std::size_t kSearchNodeLimit = 2000;
+/// How far forests are searched for: a rough one tells lengths apart, and the chosen length deserves the best one.
+struct SearchLimits {
+  std::size_t trees_per_path, cover_nodes;
+};
+constexpr SearchLimits kRough{.trees_per_path = 20, .cover_nodes = 50};
+constexpr SearchLimits kThorough{.trees_per_path = 1000, .cover_nodes = 2000};
 
 /// A tube under construction: paths that links hold together.
 struct Tree {
-  std::vector<std::uint32_t> paths = {};
-  std::vector<std::uint32_t> links = {};
-  std::vector<std::uint32_t> used_ends = {};
+  PathNumbers paths = {};
+  PathNumbers links = {};
+  PathNumbers used_ends = {};
   std::uint64_t key = 0;  ///< the paths' keys, xor: the same for the same paths in any order (Zobrist 1970)
   double link_cost = 0.0;
   double cost = 0.0;                      ///< with what its length says
@@ -35,6 +42,17 @@ struct Tree {
 
   bool holds(std::uint32_t path) const { return std::find(paths.begin(), paths.end(), path) != paths.end(); }
   bool uses(std::uint32_t end) const { return std::find(used_ends.begin(), used_ends.end(), end) != used_ends.end(); }
+};
+
+/// Trees that together hold each path once, chosen from the possible ones.
+struct Forest {
+  std::vector<Tree> possible;
+  std::vector<PathCandidate> candidates;  ///< the possible trees as sets of paths
+  PathCover cover;
+
+  auto trees() const {
+    return cover.chosen | std::views::transform([&](std::uint32_t c) -> const Tree& { return possible[c]; });
+  }
 };
 
 class TreeJoiner {
@@ -88,9 +106,9 @@ class TreeJoiner {
 
   /// What speaks against a common length with these trees, nats; infinite unless at least half of all tube is in trees
   /// of that length. One that all lengths up to it are as likely for has it but once in length / (sqrt(2 pi) sigma).
-  double cost_of_length(const std::vector<Tree>& trees, double tube_length) const {
+  double cost_of_length(const Forest& forest, double tube_length) const {
     double cost = 0.0, all = 0.0, as_long = 0.0;
-    for (const Tree& tree : trees) {
+    for (const Tree& tree : forest.trees()) {
       const double sigma = length_sigma(tree.paths.size());
       all += tree.length;
       cost += tree.cost;
@@ -101,31 +119,41 @@ class TreeJoiner {
     return as_long >= all / 2.0 ? cost : std::numeric_limits<double>::infinity();
   }
 
-  /// The cheapest set of trees that holds each path once.
-  std::vector<Tree> cheapest_trees(double tube_length) {
+  /// The cheapest one where the tubes have this length, metres.
+  Forest cheapest_forest(double tube_length, const SearchLimits& limits) {
     tube_length_ = tube_length;
     trees_.clear();
     tree_of_key_.clear();
-    for (const Tree& tree : singles_) {
-      budget_ = kTreesPerPath;
-      grow(tree);
-    }
+    for (const Tree& tree : singles_) grow(tree, limits.trees_per_path);
     std::vector<PathCandidate> candidates;
-    for (const Tree& tree : trees_) {
-      PathCandidate& candidate = candidates.emplace_back();
-      candidate.items.assign(tree.paths.begin(), tree.paths.end());
-      candidate.cost = tree.cost;
+    for (const Tree& tree : trees_) candidates.push_back({.items = tree.paths, .cost = tree.cost});
+    PathCover cover = cheapest_path_cover(singles_.size(), candidates, {}, limits.cover_nodes);
+    return {.possible = std::move(trees_), .candidates = std::move(candidates), .cover = std::move(cover)};
+  }
+
+  /// Of the possible lengths, that which explains the scan best, metres; 0 where none does.
+  double common_length() {
+    double best = 0.0, least = std::numeric_limits<double>::infinity();
+    for (const double length : possible_lengths()) {
+      const double cost = cost_of_length(cheapest_forest(length, kRough), length);
+      if (cost >= least) continue;
+      least = cost;
+      best = length;
     }
-    const PathCover cover = cheapest_path_cover(singles_.size(), candidates, {}, kSearchNodeLimit);
-    const CoverMargins margins(cover, candidates, {});
-    std::vector<Tree> chosen;
-    for (const std::uint32_t c : cover.chosen) {
-      Tree& tree = chosen.emplace_back(trees_[c]);
+    return best;
+  }
+
+  /// Its trees, with their odds.
+  std::vector<Tree> trees_of(const Forest& forest) const {
+    const CoverMargins margins(forest.cover, forest.candidates, {});
+    std::vector<Tree> trees;
+    for (const std::uint32_t c : forest.cover.chosen) {
+      Tree& tree = trees.emplace_back(forest.possible[c]);
       tree.whole_odds = margins.of_path(c);
       for (const std::uint32_t l : tree.links)
         tree.link_odds.push_back(margins.of_pair(links_[l].end / 2, links_[l].other));
     }
-    return chosen;
+    return trees;
   }
 
   TubeModel tube_of(const Tree& tree, const std::vector<TubePath>& paths) const {
@@ -180,29 +208,56 @@ class TreeJoiner {
     return std::min(0.5 * unexplained * unexplained / (sigma * sigma), kTreeLengthCostLimit);
   }
 
-  /// A path longer than the tubes' common length stands alone: a wrong length deletes nothing.
-  void grow(const Tree& tree) {
-    if (budget_ == 0) return;
-    if (tree.paths.size() > 1 && tree.length > tube_length_ + 4.0 * length_sigma(tree.paths.size())) return;
-    --budget_;
+  /// A tree and a link that leads from it to a further path.
+  struct Growth {
+    double link_cost;
+    std::size_t tree;
+    std::uint32_t link, path;
+    bool operator>(const Growth& other) const { return link_cost > other.link_cost; }
+  };
+
+  /// Keeps the trees that hold the path, those of the likeliest links first. A path longer than the tubes' common length
+  /// stands alone: a wrong length deletes nothing.
+  void grow(const Tree& single, std::size_t trees_per_path) {
+    std::priority_queue<Growth, std::vector<Growth>, std::greater<>> growths;
+    std::vector<Tree> grown = {single};
+    while (true) {
+      if (keep_if_cheapest(grown.back()))
+        for (const std::uint32_t path : grown.back().paths)
+          for (const std::uint32_t l : links_of_path_[path])
+            if (const std::uint32_t next = links_[l].end / 2 == path ? links_[l].other : links_[l].end / 2;
+                may_grow(grown.back(), l, next))
+              growths.push({grown.back().link_cost + links_[l].cost, grown.size() - 1, l, next});
+      if (growths.empty() || grown.size() == trees_per_path) return;
+      grown.push_back(grown_tree(grown[growths.top().tree], growths.top()));
+      growths.pop();
+    }
+  }
+
+  Tree grown_tree(Tree tree, const Growth& growth) const {
+    add_link(tree, growth.link);
+    tree.paths.push_back(growth.path);
+    tree.key ^= keys_[growth.path];
+    tree.length += singles_[growth.path].length;
+    return tree;
+  }
+
+  bool may_grow(const Tree& tree, std::uint32_t l, std::uint32_t next) const {
+    const BranchLink& link = links_[l];
+    const double length = tree.length + link.length + singles_[next].length;
+    return !tree.holds(next) && !tree.uses(link.end) && !(link.other_end && tree.uses(*link.other_end)) &&
+           length <= tube_length_ + 4.0 * length_sigma(tree.paths.size() + 1);
+  }
+
+  /// Whether no cheaper tree has the same paths.
+  bool keep_if_cheapest(const Tree& tree) {
     const auto [entry, added] = tree_of_key_.try_emplace(tree.key, trees_.size());
     const double cost = tree.link_cost + length_cost(tree);
-    if (!added && trees_[entry->second].cost <= cost) return;
-    if (added) trees_.push_back(tree);
-    else trees_[entry->second] = tree;
+    if (!added && trees_[entry->second].cost <= cost) return false;
+    if (added) trees_.emplace_back();
+    trees_[entry->second] = tree;
     trees_[entry->second].cost = cost;
-    for (const std::uint32_t path : tree.paths)
-      for (const std::uint32_t l : links_of_path_[path]) {
-        const BranchLink& link = links_[l];
-        const std::uint32_t next = link.end / 2 == path ? link.other : link.end / 2;
-        if (tree.holds(next) || tree.uses(link.end) || (link.other_end && tree.uses(*link.other_end))) continue;
-        Tree grown = tree;
-        add_link(grown, l);
-        grown.paths.push_back(next);
-        grown.key ^= keys_[next];
-        grown.length += singles_[next].length;
-        grow(grown);
-      }
+    return true;
   }
 
   double radius_;
@@ -214,7 +269,6 @@ class TreeJoiner {
   std::vector<Tree> singles_;  ///< each path alone
   std::vector<Tree> trees_;
   std::unordered_map<std::uint64_t, std::size_t> tree_of_key_;
-  std::size_t budget_ = 0;
 };
 
 /// The longest length that three of the paths have to a radius; infinite where there is none.
@@ -242,22 +296,11 @@ std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double 
   std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion, 40.0 * radius);
   std::vector<BranchLink> links = find_branch_links(pieces, ends, occlusion, kLinkCostLimit);
   TreeJoiner joiner(pieces, std::move(ends), std::move(links), radius);
-  std::vector<Tree> trees;
-  if (tube_length > 0.0) {
-    trees = joiner.cheapest_trees(tube_length);
-  } else {
-    trees = joiner.likely_trees(0.0);
-    double least = std::numeric_limits<double>::infinity();
-    for (const double length : joiner.possible_lengths()) {
-      std::vector<Tree> of_length = joiner.cheapest_trees(length);
-      const double cost = joiner.cost_of_length(of_length, length);
-      if (cost >= least) continue;
-      least = cost;
-      trees = std::move(of_length);
-    }
-  }
+  const double length = tube_length > 0.0 ? tube_length : joiner.common_length();
   std::vector<TubeModel> tubes;
-  for (const Tree& tree : trees) tubes.push_back(joiner.tube_of(tree, paths));
+  for (const Tree& tree :
+       length > 0.0 ? joiner.trees_of(joiner.cheapest_forest(length, kThorough)) : joiner.likely_trees(0.0))
+    tubes.push_back(joiner.tube_of(tree, paths));
   return tubes;
 }
 
