@@ -7,6 +7,7 @@
 #include <optional>
 #include <queue>
 #include <ranges>
+#include <set>
 #include <unordered_map>
 
 #include "modeling/fitting/vote_voxels.hpp"
@@ -21,12 +22,17 @@ namespace {
 constexpr double kLinkCostLimit = 9.0;
 /// A tube shorter than it should be can have other reasons than a missed link: e^-10.
 constexpr double kTreeLengthCostLimit = 10.0;
-/// How far forests are searched for: a rough one tells lengths apart, and the chosen length deserves the best one.
-struct SearchLimits {
+/// Radii: each path's length is off by as much, where it is led up to another and where it bends out of sight.
+constexpr double kLengthScatter = 1.0;
+/// Where the common length is not told, it is off, too.
+constexpr double kFoundLengthScatter = 2.0;
+
+/// How far a forest is searched for: roughly to tell lengths apart, thoroughly once the length is known.
+struct Search {
   std::size_t trees_per_path, cover_nodes;
 };
-constexpr SearchLimits kRough{.trees_per_path = 20, .cover_nodes = 50};
-constexpr SearchLimits kThorough{.trees_per_path = 1000, .cover_nodes = 2000};
+constexpr Search kRough{.trees_per_path = 20, .cover_nodes = 50};
+constexpr Search kThorough{.trees_per_path = 1000, .cover_nodes = 2000};
 
 /// A tube under construction: paths that links hold together.
 struct Tree {
@@ -120,14 +126,15 @@ class TreeJoiner {
   }
 
   /// The cheapest one where the tubes have this length, metres.
-  Forest cheapest_forest(double tube_length, const SearchLimits& limits) {
+  Forest cheapest_forest(double tube_length, double scatter, const Search& search) {
     tube_length_ = tube_length;
+    scatter_ = scatter;
     trees_.clear();
     tree_of_key_.clear();
-    for (const Tree& tree : singles_) grow(tree, limits.trees_per_path);
+    for (const Tree& tree : singles_) grow(tree, search.trees_per_path);
     std::vector<PathCandidate> candidates;
     for (const Tree& tree : trees_) candidates.push_back({.items = tree.paths, .cost = tree.cost});
-    PathCover cover = cheapest_path_cover(singles_.size(), candidates, {}, limits.cover_nodes);
+    PathCover cover = cheapest_path_cover(singles_.size(), candidates, {}, search.cover_nodes);
     return {.possible = std::move(trees_), .candidates = std::move(candidates), .cover = std::move(cover)};
   }
 
@@ -135,7 +142,7 @@ class TreeJoiner {
   double common_length() {
     double best = 0.0, least = std::numeric_limits<double>::infinity();
     for (const double length : possible_lengths()) {
-      const double cost = cost_of_length(cheapest_forest(length, kRough), length);
+      const double cost = cost_of_length(cheapest_forest(length, kLengthScatter, kRough), length);
       if (cost >= least) continue;
       least = cost;
       best = length;
@@ -195,8 +202,7 @@ class TreeJoiner {
     });
   }
 
-  /// Each path's length is off by about a radius, where it is led up to another and where it bends out of sight.
-  double length_sigma(std::size_t paths) const { return radius_ * std::sqrt(static_cast<double>(paths)); }
+  double length_sigma(std::size_t paths) const { return scatter_ * radius_ * std::sqrt(static_cast<double>(paths)); }
 
   double length_cost(const Tree& tree) const {
     const double missing = tube_length_ - tree.length, sigma = length_sigma(tree.paths.size());
@@ -261,7 +267,8 @@ class TreeJoiner {
   }
 
   double radius_;
-  double tube_length_ = 0.0;
+  double tube_length_ = 0.0;         ///< of the forest that is searched for, metres
+  double scatter_ = kLengthScatter;  ///< of the paths' lengths, radii
   std::vector<PieceEnd> ends_;
   std::vector<BranchLink> links_;  ///< cheapest first
   std::vector<std::vector<std::uint32_t>> links_of_path_;
@@ -281,6 +288,12 @@ double recurring_length(const std::vector<TubePiece>& paths) {
   return std::numeric_limits<double>::infinity();
 }
 
+/// The likeliest link of each path: a branch starts at one of its ends.
+void keep_one_of_each_branch(std::vector<BranchLink>& links) {
+  std::set<std::uint32_t> branches;
+  std::erase_if(links, [&](const BranchLink& link) { return !branches.insert(link.end / 2).second; });
+}
+
 std::vector<TubePiece> pieces_of(const std::vector<TubePath>& paths, double radius) {
   std::vector<TubePiece> pieces;
   for (const TubePath& path : paths) pieces.push_back({.nodes = path.nodes, .radius = radius, .points = {}});
@@ -296,10 +309,12 @@ std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double 
   std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion, 40.0 * radius);
   std::vector<BranchLink> links = find_branch_links(pieces, ends, occlusion, kLinkCostLimit);
   TreeJoiner joiner(pieces, std::move(ends), std::move(links), radius);
-  const double length = tube_length > 0.0 ? tube_length : joiner.common_length();
+  const bool is_told = tube_length > 0.0;
+  const double length = is_told ? tube_length : joiner.common_length();
+  const double scatter = is_told ? kLengthScatter : kFoundLengthScatter;
   std::vector<TubeModel> tubes;
   for (const Tree& tree :
-       length > 0.0 ? joiner.trees_of(joiner.cheapest_forest(length, kThorough)) : joiner.likely_trees(0.0))
+       length > 0.0 ? joiner.trees_of(joiner.cheapest_forest(length, scatter, kThorough)) : joiner.likely_trees(0.0))
     tubes.push_back(joiner.tube_of(tree, paths));
   return tubes;
 }
@@ -316,14 +331,14 @@ std::vector<TubeModel> join_likely_branches(const std::vector<TubePath>& paths, 
            (tube_length > 0.0 && branch.length() + trunk.length() > tube_length + 2.0 * radius);
   };
   std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion, 40.0 * radius);
-  // A tube's end that touches another's side looks like a branch, and counts as one only where others do.
-  const auto may_touch = [&](const BranchLink& link) {
-    const double distance = distance_to_polyline(ends[link.end].position, pieces[link.other].nodes);
-    return distance > 0.75 * radius && distance < 1.3 * radius;
-  };
   std::vector<BranchLink> links = find_branch_links(pieces, ends, occlusion, 0.0);
   std::erase_if(links, is_no_branch);
-  if (std::ranges::all_of(links, may_touch)) links.clear();
+  keep_one_of_each_branch(links);
+  // One that looks like a branch may be a tube's end that touches another's side.
+  if (links.size() == 1) {
+    const double distance = distance_to_polyline(ends[links[0].end].position, pieces[links[0].other].nodes);
+    if (distance > 0.75 * radius && distance < 1.3 * radius) links.clear();
+  }
   const TreeJoiner joiner(pieces, std::move(ends), std::move(links), radius);
   std::vector<TubeModel> tubes;
   for (Tree& tree : joiner.likely_trees(0.0)) {

@@ -7,8 +7,6 @@
 namespace tubebin::modeling {
 namespace {
 
-/// -log of how many of the other ends out of sight lead to another path of their tube, to how many do not: one to two.
-constexpr double kHiddenLinkCost = 0.7;
 /// -log of how seldom (1 in 100) a place that a tube takes up is measured as empty.
 constexpr double kEmptyLinkCost = 4.6;
 /// In radii: what is farther ahead is met by chance as likely as by a branch.
@@ -52,7 +50,8 @@ Surroundings surroundings_of(const std::vector<TubePiece>& paths) {
           .line_density = length / (box.sizes().array() + 2.0 * radius).prod()};
 }
 
-/// -log of the likelihood ratio of "the end leads to the other path's place" to "that path passes there by chance".
+/// -log of the likelihood ratio of "the end leads to the other path's place" to "that path passes there by chance", where
+/// as many ends out of sight lead to another path of their tube as do not.
 /// As in join_candidates.cpp, a direction that walks at random with variance q a metre is off by q D^3 / 3 an axis after
 /// a length D. Of the two axes only the one across both counts, since the branch may start anywhere along the other
 /// path. Tails are Student's t with 3 degrees of freedom (in 1 dimension, log norm log(2 / (pi sqrt(3)))). Lines of
@@ -95,7 +94,7 @@ std::optional<BranchLink> side_link(const PieceEnd& end, const TubePiece& other,
     return BranchLink{.place = *place, .length = (*place - end.position).norm(), .cost = kOnSideCost};
   auto link = likeliest_side(end, other, around);
   if (!link) return std::nullopt;
-  link->cost += kHiddenLinkCost + kEmptyLinkCost * end.seen_free;
+  link->cost += kEmptyLinkCost * end.seen_free;
   if (link->cost >= cost_limit) return std::nullopt;
   const double samples = std::max(link->length / (2.0 * around.radius), 1.0);
   link->cost +=
