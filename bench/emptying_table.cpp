@@ -32,11 +32,15 @@ void make_scenes(const dataset::DatasetConfig& config, const dataset::SceneStore
     if (attempt == config.attempts_max) throw_io_error("{}: given up: {}", id.name(), made.failure_detail);
     made = dataset::make_piles(config, id, attempt, lifts);
   }
+  costs.seconds += now() - start;
   for (std::size_t step = 0; step < made.piles.size(); ++step) {
     const dataset::Pile& pile = made.piles[step];
     dataset::SceneId shown = id;
     if (lifts > 0) shown.step = static_cast<int>(step);
-    store.begin_write(fmt::format("{}/{}", lifts, shown.name()), dataset::show_pile(made, shown).content)();
+    const double begin = now();
+    store.begin_write(shown.name(), dataset::show_pile(made, shown).content)();
+    costs.seconds += now() - begin;
+    store.remove(shown.name());  // or the kernel would look for new memory for each scene
     ++costs.scenes;
     costs.largest_drift = std::max(costs.largest_drift, pile.rest.figures.largest_drift);
     costs.deepest_penetration = std::max(costs.deepest_penetration, pile.rest.figures.deepest_penetration);
@@ -44,7 +48,6 @@ void make_scenes(const dataset::DatasetConfig& config, const dataset::SceneStore
     costs.lift_steps += pile.rest.figures.steps;
     costs.given_up += static_cast<int>(pile.lift->given_up.size());
   }
-  costs.seconds += now() - start;
 }
 
 double milliseconds_a_scene(const Costs& costs) { return costs.seconds / costs.scenes * 1e3; }

@@ -23,15 +23,14 @@ std::vector<std::size_t> liftable_tubes(const std::vector<scene::PlacedTube>& tu
 }
 
 /// Takes out of `liftable` the tube that the rule lifts next.
-std::size_t take_next(std::vector<std::size_t>& liftable, const std::vector<scene::PlacedTube>& tubes, LiftRule rule,
+std::size_t take_next(std::vector<std::size_t>& liftable, const physics::DropResult& pile, LiftRule rule,
                       Random& random) {
   auto next = liftable.begin();
   if (rule == LiftRule::random) {
     next += random.integer(0, static_cast<int>(liftable.size()) - 1);
   } else {
     std::vector<double> heights;
-    for (const std::size_t i : liftable)
-      heights.push_back((tubes[i].world_from_tube * tube::mass_properties(tubes[i].tube).center).z());
+    for (const std::size_t i : liftable) heights.push_back((pile.tubes[i].world_from_tube * pile.masses[i].center).z());
     next += std::ranges::max_element(heights) - heights.begin();
   }
   const std::size_t tube = *next;
@@ -89,7 +88,7 @@ Piles lift_next(const DatasetConfig& config, const Pile& before, std::uint64_t s
   std::vector<std::size_t> liftable = liftable_tubes(before.rest.tubes);
   std::vector<std::uint32_t> given_up;
   while (true) {
-    const std::size_t tube = take_next(liftable, before.rest.tubes, config.sequence.rule, random);
+    const std::size_t tube = take_next(liftable, before.rest, config.sequence.rule, random);
     Piles left = lift_one(config, before, tube, random.bits());
     if (left.failure.empty()) {
       left.piles.front().seed = seed;

@@ -9,7 +9,7 @@ DropResult drop_tubes(const std::vector<tube::Tube>& tubes, const scene::Bin& bi
                       std::uint64_t seed) {
   Random random(seed);
   const auto spawned = spawn(tubes, bin, options, random);
-  if (spawned) return settle(RigidWorld(*spawned, bin, options), 0.0, bin, options, random);
+  if (spawned) return settle(RigidWorld(*spawned, bin, options), {}, bin, options, random);
   DropResult result;
   result.failure = DropFailure::spawn;
   result.detail = "a tube fits between the walls in no orientation";

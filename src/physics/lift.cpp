@@ -4,6 +4,7 @@
 #include <deque>
 #include <limits>
 
+#include "physics/rest_check.hpp"
 #include "physics/rest_proof.hpp"
 #include "physics/rigid_world.hpp"
 #include "physics/settling.hpp"
@@ -26,7 +27,7 @@ class Pull {
         rim_(bin.height),
         options_(options),
         lift_(lift),
-        world_(pile.tubes, bin, options, pile.forces ? *pile.forces : PileForces{}) {
+        world_(pile.tubes, bin, options, pile.forces ? *pile.forces : PileForces{}, pile.masses) {
     for (std::size_t i = 0; i < world_.size(); ++i) start_heights_.push_back(world_.center_of_mass(i).z());
     highest_ = start_heights_;
   }
@@ -40,7 +41,7 @@ class Pull {
       time_ += time_step;
       for (std::size_t i = 0; i < world_.size(); ++i) highest_[i] = std::max(highest_[i], world_.center_of_mass(i).z());
       add_force(world_.pulling_force(), time_step);
-      if (!others_are_below(options_.rest_speed, options_.rest_turn_rate)) last_fast_ = time_;
+      if (!all_below(world_, options_.rest_speed, options_.rest_turn_rate, tube_)) last_fast_ = time_;
     }
   }
 
@@ -53,7 +54,8 @@ class Pull {
         result.dragged.push_back(i < tube_ ? i : i - 1);
     world_.remove_pulled();
     Random random(seed);
-    result.rest = settle(std::move(world_), time_ - last_fast_, bin, options_, random);
+    const Pace pace{.slow_for = time_ - last_fast_, .long_step_speed = kLongStepSpeed};
+    result.rest = settle(std::move(world_), pace, bin, options_, random);
     result.rest.figures.steps += steps_;
     result.rest.figures.simulated_seconds += time_;
     return result;
@@ -63,21 +65,15 @@ class Pull {
   /// Clear of all others and with nothing above it, or above the rim whatever hangs on it.
   bool is_out() const {
     if (steps_ == 0) return false;
-    if (CollisionTube(world_.tubes()[tube_]).bounds.min().z() > rim_ + kAboveTheRim) return true;
+    if (world_.bounds(tube_).min().z() > rim_ + kAboveTheRim) return true;
     return !world_.touches_another(tube_) && !scene::has_above(world_.tubes(), static_cast<std::uint32_t>(tube_ + 1));
   }
 
   /// The long one while all is slow.
   double next_time_step() const {
-    const bool long_is_enough =
-        lift_.speed <= kLongStepSpeed && others_are_below(kLongStepSpeed, std::numeric_limits<double>::infinity());
+    const bool long_is_enough = lift_.speed <= kLongStepSpeed &&
+                                all_below(world_, kLongStepSpeed, std::numeric_limits<double>::infinity(), tube_);
     return long_is_enough ? options_.rest_time_step : options_.time_step;
-  }
-
-  bool others_are_below(double speed, double turn_rate) const {
-    for (std::size_t i = 0; i < world_.size(); ++i)
-      if (i != tube_ && !(world_.speed(i) < speed && world_.turn_rate(i) < turn_rate)) return false;
-    return true;
   }
 
   void add_force(double force, double seconds) {
@@ -106,11 +102,11 @@ class Pull {
   const LiftOptions& lift_;
   RigidWorld world_;
   int steps_ = 0;
-  double time_ = 0.0;                            ///< seconds
-  double last_fast_ = 0.0;                       ///< seconds, of the others
-  std::vector<double> start_heights_, highest_;  ///< metres, of the centres of mass
-  std::deque<StepForce> forces_;                 ///< of the last steps
-  double window_ = 0.0;                          ///< seconds, all theirs
+  double time_ = 0.0;                                            ///< seconds
+  double last_fast_ = -std::numeric_limits<double>::infinity();  ///< seconds, of the others; they were at rest
+  std::vector<double> start_heights_, highest_;                  ///< metres, of the centres of mass
+  std::deque<StepForce> forces_;                                 ///< of the last steps
+  double window_ = 0.0;                                          ///< seconds, all theirs
   double most_force_ = 0.0;
 };
 

@@ -5,10 +5,14 @@
 
 namespace tubebin::physics {
 
-bool is_slow(const RigidWorld& world, const PhysicsOptions& options) {
+bool all_below(const RigidWorld& world, double speed, double turn_rate, std::optional<std::size_t> except) {
   for (std::size_t i = 0; i < world.size(); ++i)
-    if (!(world.speed(i) < options.rest_speed && world.turn_rate(i) < options.rest_turn_rate)) return false;
+    if (i != except && !(world.speed(i) < speed && world.turn_rate(i) < turn_rate)) return false;
   return true;
+}
+
+bool is_slow(const RigidWorld& world, const PhysicsOptions& options) {
+  return all_below(world, options.rest_speed, options.rest_turn_rate);
 }
 
 namespace {

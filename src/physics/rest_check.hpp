@@ -8,6 +8,9 @@
 
 namespace tubebin::physics {
 
+/// Every tube, but for one perhaps, below both (m/s, rad/s).
+bool all_below(const RigidWorld& world, double speed, double turn_rate, std::optional<std::size_t> except = {});
+
 /// Every tube slower than the options' thresholds.
 bool is_slow(const RigidWorld& world, const PhysicsOptions& options);
 

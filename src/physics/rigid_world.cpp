@@ -47,16 +47,15 @@ struct RigidWorld::Impl {
   std::optional<std::size_t> pulled;     ///< the tube that is held, whatever pushes
   std::vector<scene::PlacedTube> tubes;  ///< poses are the bodies'
   std::vector<dBodyID> bodies;
+  std::vector<tube::MassProperties> masses;
   std::vector<double> inverse_masses;             ///< 1/kg
   std::vector<Eigen::Matrix3d> inverse_inertias;  ///< about the centre of mass, tube frame
-  std::vector<Vec3> centers;                      ///< of mass, tube frame
   std::vector<CollisionTube> shapes;
   NearCylinders near_cylinders;
   std::vector<Touch> touches;
   std::vector<StepContact> contacts;  ///< of the last step
 
-  void add_body(const scene::PlacedTube& tube) {
-    const tube::MassProperties properties = tube::mass_properties(tube.tube);
+  void add_body(const scene::PlacedTube& tube, const tube::MassProperties& properties) {
     const dMass mass = to_ode(properties);
     const dBodyID body = dBodyCreate(world);
     dBodySetMass(body, &mass);
@@ -64,14 +63,13 @@ struct RigidWorld::Impl {
     bodies.push_back(body);
     inverse_masses.push_back(1.0 / properties.mass);
     inverse_inertias.push_back(properties.inertia.inverse());
-    centers.push_back(properties.center);
     shapes.emplace_back(tube);
   }
 
   void remove(std::size_t i) {
     dBodyDestroy(bodies[i]);
     const auto erase = [i](auto& of_each) { of_each.erase(of_each.begin() + static_cast<std::ptrdiff_t>(i)); };
-    erase(tubes), erase(bodies), erase(inverse_masses), erase(inverse_inertias), erase(centers), erase(shapes);
+    erase(tubes), erase(bodies), erase(masses), erase(inverse_masses), erase(inverse_inertias), erase(shapes);
     near_cylinders = {};
     std::erase_if(contacts, [i](const StepContact& c) { return c.first == i || c.second == i; });
     for (StepContact& contact : contacts) {
@@ -91,7 +89,7 @@ struct RigidWorld::Impl {
   void read_pose(std::size_t i) {
     const dReal* q = dBodyGetQuaternion(bodies[i]);
     const Quat rotation(q[0], q[1], q[2], q[3]);
-    tubes[i].world_from_tube = make_pose(rotation, to_vec(dBodyGetPosition(bodies[i])) - rotation * centers[i]);
+    tubes[i].world_from_tube = make_pose(rotation, to_vec(dBodyGetPosition(bodies[i])) - rotation * masses[i].center);
   }
 
   /// How far a tube's surface may come in a step, metres. What is so near counts as a contact with a gap, so that nothing
@@ -179,7 +177,7 @@ struct RigidWorld::Impl {
 };
 
 RigidWorld::RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin,
-                       const PhysicsOptions& options, PileForces forces)
+                       const PhysicsOptions& options, PileForces forces, std::vector<tube::MassProperties> masses)
     : impl_(std::make_unique<Impl>()) {
   init_ode();
   impl_->options = options;
@@ -194,7 +192,10 @@ RigidWorld::RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene:
                                        impl_->threading);
   dWorldSetGravity(impl_->world, 0, 0, -options.gravity);
   dWorldSetDamping(impl_->world, options.damping_linear, options.damping_angular);
-  for (const scene::PlacedTube& tube : tubes) impl_->add_body(tube);
+  impl_->masses = std::move(masses);
+  for (std::size_t i = impl_->masses.size(); i < tubes.size(); ++i)
+    impl_->masses.push_back(tube::mass_properties(tubes[i].tube));
+  for (std::size_t i = 0; i < tubes.size(); ++i) impl_->add_body(tubes[i], impl_->masses[i]);
 }
 
 RigidWorld::RigidWorld(RigidWorld&&) noexcept = default;
@@ -257,7 +258,7 @@ bool RigidWorld::touches_another(std::size_t tube) const {
 
 void RigidWorld::put(std::size_t tube, const Pose& world_from_tube) {
   impl_->tubes[tube].world_from_tube = world_from_tube;
-  impl_->set_pose(impl_->bodies[tube], world_from_tube, impl_->centers[tube]);
+  impl_->set_pose(impl_->bodies[tube], world_from_tube, impl_->masses[tube].center);
   dBodySetLinearVel(impl_->bodies[tube], 0, 0, 0);
   dBodySetAngularVel(impl_->bodies[tube], 0, 0, 0);
   impl_->shapes[tube].follow(impl_->tubes[tube]);
@@ -265,7 +266,9 @@ void RigidWorld::put(std::size_t tube, const Pose& world_from_tube) {
 
 PileForces RigidWorld::forces() const { return {impl_->contacts}; }
 const std::vector<scene::PlacedTube>& RigidWorld::tubes() const { return impl_->tubes; }
+const std::vector<tube::MassProperties>& RigidWorld::masses() const { return impl_->masses; }
 Pose RigidWorld::pose(std::size_t tube) const { return impl_->tubes[tube].world_from_tube; }
+scene::Box RigidWorld::bounds(std::size_t tube) const { return impl_->shapes[tube].bounds; }
 Vec3 RigidWorld::center_of_mass(std::size_t tube) const { return to_vec(dBodyGetPosition(impl_->bodies[tube])); }
 double RigidWorld::speed(std::size_t tube) const { return to_vec(dBodyGetLinearVel(impl_->bodies[tube])).norm(); }
 double RigidWorld::turn_rate(std::size_t tube) const { return to_vec(dBodyGetAngularVel(impl_->bodies[tube])).norm(); }

@@ -15,9 +15,10 @@ struct PileForces {
 
 class RigidWorld {
  public:
-  /// Tubes that stand still, under no forces or under those of an earlier world with the same tubes in the same places.
+  /// Tubes that stand still, under no forces or under those of an earlier world with the same tubes in the same places,
+  /// whose masses are known, too: they take longer than some steps.
   RigidWorld(const std::vector<scene::PlacedTube>& tubes, const scene::Bin& bin, const PhysicsOptions& options,
-             PileForces forces = {});
+             PileForces forces = {}, std::vector<tube::MassProperties> masses = {});
   ~RigidWorld();
   RigidWorld(RigidWorld&&) noexcept;
   RigidWorld(const RigidWorld&) = delete;
@@ -43,8 +44,10 @@ class RigidWorld {
   /// Of the last step.
   PileForces forces() const;
   const std::vector<scene::PlacedTube>& tubes() const;
+  const std::vector<tube::MassProperties>& masses() const;
   /// World pose of one tube's frame.
   Pose pose(std::size_t tube) const;
+  scene::Box bounds(std::size_t tube) const;  ///< world frame
   Vec3 center_of_mass(std::size_t tube) const;
   double speed(std::size_t tube) const;      ///< m/s, of the centre of mass
   double turn_rate(std::size_t tube) const;  ///< rad/s

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "physics/rest_check.hpp"
 #include "physics/rest_proof.hpp"
@@ -25,13 +26,14 @@ DropResult failed(DropFailure failure, std::string detail, DropFigures figures =
 /// Tubes that come to rest, while they do.
 class Settling {
  public:
-  Settling(RigidWorld world, double slow_for, const scene::Bin& bin, const PhysicsOptions& options, Random& random)
-      : bin_(bin),
+  Settling(RigidWorld world, const Pace& pace, const scene::Bin& bin, const PhysicsOptions& options, Random& random)
+      : long_step_speed_(pace.long_step_speed),
+        bin_(bin),
         options_(options),
         random_(random),
         world_(std::move(world)),
         proof_(options),
-        last_fast_(-slow_for) {
+        last_fast_(-pace.slow_for) {
     const double top = top_of(world_.tubes());
     if (options.spill == Spill::guard) world_.raise_guards(top);
     wait_for_a_fall_from(top);
@@ -53,8 +55,9 @@ class Settling {
 
  private:
   void step() {
-    const bool all_slow = have_passed(options_.rest_window, last_fast_, time_);
-    const double time_step = all_slow ? options_.rest_time_step : options_.time_step;
+    const bool long_is_enough = have_passed(options_.rest_window, last_fast_, time_) ||
+                                all_below(world_, long_step_speed_, std::numeric_limits<double>::infinity());
+    const double time_step = long_is_enough ? options_.rest_time_step : options_.time_step;
     world_.step(time_step);
     ++figures_.steps;
     time_ = figures_.simulated_seconds += time_step;
@@ -86,6 +89,7 @@ class Settling {
 
   void wait_for_a_fall_from(double height) { deadline_ = time_ + options_.time_limit + height / options_.speed_max; }
 
+  double long_step_speed_;
   const scene::Bin& bin_;
   const PhysicsOptions& options_;
   Random& random_;
@@ -100,6 +104,7 @@ class Settling {
 DropResult judge(const RigidWorld& world, const scene::Bin& bin, const PhysicsOptions& options, DropFigures figures) {
   DropResult result;
   result.tubes = world.tubes();
+  result.masses = world.masses();
   result.contacts = find_contacts(result.tubes, bin, -kTouchingGap);
   figures.deepest_penetration = deepest_penetration(result.contacts);
   result.figures = figures;
@@ -113,9 +118,9 @@ DropResult judge(const RigidWorld& world, const scene::Bin& bin, const PhysicsOp
 
 }  // namespace
 
-DropResult settle(RigidWorld world, double slow_for, const scene::Bin& bin, const PhysicsOptions& options,
+DropResult settle(RigidWorld world, const Pace& pace, const scene::Bin& bin, const PhysicsOptions& options,
                   Random& random) {
-  Settling settling(std::move(world), slow_for, bin, options, random);
+  Settling settling(std::move(world), pace, bin, options, random);
   switch (const DropFailure failure = settling.settle()) {
     case DropFailure::none:
       return judge(settling.world(), bin, options, settling.figures());

@@ -179,13 +179,15 @@ class RowCounter {
   Layer& top_layer(const Column& column) { return layers_[static_cast<std::size_t>(column.top)].layer; }
 
   void mark(const Run& run) {
+    std::size_t pixels = 0;
     for (int i = run.columns.begin; i < run.columns.end; ++i) {
       Column& column = at(i);
       if (column.last == run.label) continue;
       column.last = run.label;
       ++column.tubes;
-      ++view_.amodal_pixels[run.label - 1];
+      ++pixels;
     }
+    view_.amodal_pixels[run.label - 1] += pixels;
     const double deepest = deepest_[run.label - 1][run.solid];
     for (const BinFront::Part& part : occlusions_.bin().parts()) {
       const scene::PixelWindow& window = part.window;

@@ -140,6 +140,11 @@ void RayCaster::find_first_hits(RayPacket& packet, int count, const BodiesInReac
   decide(packet, count);
 }
 
+bool RayCaster::find_bin_points(const scene::Camera& camera, int column, int row, BoxFlags boxes,
+                                std::span<cloud::Point> points) const {
+  return !mesh_ && RayPacket::get_bin_points(camera, column, row, solids_.bin, boxes, depth_min_, depth_max_, points);
+}
+
 void RayCaster::offer_few(RayPacket& packet, const BodiesInReach& bodies) const {
   for (std::size_t i = 0; i < bodies.solid_count; ++i)
     visit_solid(solids_, bodies.solids[i], [&](const auto& solid) { packet.offer(solid); });

@@ -40,6 +40,10 @@ class RayCaster {
   /// The first hits of a new packet's first `count` rays, which meet no other `bodies` than these: of each lane,
   /// in the packet itself, infinitely deep where nothing is hit. Faster for rays side by side than one at a time.
   void find_first_hits(RayPacket& packet, int count, const BodiesInReach& bodies) const;
+  /// The points of the pixels from (column, row) on to the right, whose rays meet no more than these boxes of the bin. Faster
+  /// than by packets. Returns false, and leaves the points unsettled, where that does not decide.
+  bool find_bin_points(const scene::Camera& camera, int column, int row, BoxFlags boxes,
+                       std::span<cloud::Point> points) const;
 
  private:
   void offer_few(RayPacket& packet, const BodiesInReach& bodies) const;

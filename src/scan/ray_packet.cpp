@@ -19,17 +19,35 @@ RayPacket::RayPacket(const scene::Camera& camera, int column, int row, double de
   aim(camera, column, row);
 }
 
-/// As Camera::direction_in_world.
+namespace {
+
+/// In the image, of the pixel and those to its right.
+[[gnu::always_inline]] inline void set_centers(int column, Lanes& x) {
+  for (int lane = 0; lane < kBlockLanes; ++lane) x[lane] = column + lane + 0.5;
+}
+
+/// Of a row's centre beside the image's, for a ray of depth one.
+double slope_down(const scene::Camera& camera, int row) {
+  return (row + 0.5 - camera.height() / 2.0) / camera.focal_length();
+}
+
+}  // namespace
+
+/// As Camera::direction_in_world, whose axes these are.
+[[gnu::always_inline]] inline void RayPacket::Block::aim(const Lanes& x, double y, const scene::Camera& camera,
+                                                         const Eigen::Matrix3d& axes) {
+  const Lanes across = (x - camera.width() / 2.0) / camera.focal_length();
+  directions.x = axes(0, 0) * across + axes(0, 1) * y + axes(0, 2);
+  directions.y = axes(1, 0) * across + axes(1, 1) * y + axes(1, 2);
+  directions.z = axes(2, 0) * across + axes(2, 1) * y + axes(2, 2);
+}
+
 TUBEBIN_WIDE void RayPacket::aim(const scene::Camera& camera, int column, int row) {
   const Eigen::Matrix3d axes = camera.world_from_scanner().linear();
-  const double y = (row + 0.5 - camera.height() / 2.0) / camera.focal_length();
   Lanes x;
-  for (int lane = 0; lane < kBlockLanes; ++lane) x[lane] = column + lane + 0.5;
+  set_centers(column, x);
   for (Block& block : blocks_) {
-    const Lanes across = (x - camera.width() / 2.0) / camera.focal_length();
-    block.directions.x = axes(0, 0) * across + axes(0, 1) * y + axes(0, 2);
-    block.directions.y = axes(1, 0) * across + axes(1, 1) * y + axes(1, 2);
-    block.directions.z = axes(2, 0) * across + axes(2, 1) * y + axes(2, 2);
+    block.aim(x, slope_down(camera, row), camera, axes);
     x += kBlockLanes;
   }
 }
@@ -89,31 +107,39 @@ void RayPacket::set_first(int lane, const Hit& hit) {
   of.label[lane % kBlockLanes] = static_cast<std::int64_t>(hit.label);
 }
 
+[[gnu::always_inline]] inline void RayPacket::Block::forget_beyond(double depth_max) {
+  const LaneFlags near = depth <= depth_max;
+  depth = near ? depth : Lanes{} + std::numeric_limits<double>::infinity();
+  label &= near;
+}
+
 TUBEBIN_WIDE void RayPacket::forget_beyond(double depth_max) {
-  for (Block& block : blocks_) {
-    const LaneFlags near = block.depth <= depth_max;
-    block.depth = near ? block.depth : Lanes{} + std::numeric_limits<double>::infinity();
-    block.label &= near;
-  }
+  for (Block& block : blocks_) block.forget_beyond(depth_max);
+}
+
+/// Of the first lanes.
+[[gnu::always_inline]] inline void RayPacket::Block::get_points(const Vec3& origin,
+                                                                std::span<cloud::Point> points) const {
+  using Singles = float __attribute__((vector_size(kBlockLanes * sizeof(float))));
+  const LaneFlags found = depth < std::numeric_limits<double>::infinity();
+  const Lanes none = Lanes{} + std::numeric_limits<double>::quiet_NaN();
+  const Singles x = __builtin_convertvector(found ? origin.x() + depth * directions.x : none, Singles);
+  const Singles y = __builtin_convertvector(found ? origin.y() + depth * directions.y : none, Singles);
+  const Singles z = __builtin_convertvector(found ? origin.z() + depth * directions.z : none, Singles);
+  if (points.size() >= kBlockLanes)
+    for (std::size_t lane = 0; lane < kBlockLanes; ++lane) points[lane] = {x[lane], y[lane], z[lane]};
+  else
+    for (std::size_t lane = 0; lane < points.size(); ++lane) points[lane] = {x[lane], y[lane], z[lane]};
 }
 
 TUBEBIN_WIDE void RayPacket::get_first_points(const Vec3& origin, std::span<cloud::Point> points,
                                               std::span<cloud::Label> labels) const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t begin = 0; begin < points.size(); begin += kBlockLanes) {
     const Block& of = blocks_[begin / kBlockLanes];
-    const LaneFlags found = of.depth < kInfinity;
-    const Lanes none = Lanes{} + kNoNumber;
-    const Lanes x = found ? origin.x() + of.depth * of.directions.x : none;
-    const Lanes y = found ? origin.y() + of.depth * of.directions.y : none;
-    const Lanes z = found ? origin.z() + of.depth * of.directions.z : none;
-    const LaneFlags label = found & of.label;
+    of.get_points(origin, points.subspan(begin));
+    const LaneFlags label = (of.depth < std::numeric_limits<double>::infinity()) & of.label;
     const std::size_t count = std::min<std::size_t>(kBlockLanes, points.size() - begin);
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      points[begin + lane] = {static_cast<float>(x[lane]), static_cast<float>(y[lane]), static_cast<float>(z[lane])};
-      labels[begin + lane] = static_cast<cloud::Label>(label[lane]);
-    }
+    for (std::size_t lane = 0; lane < count; ++lane) labels[begin + lane] = static_cast<cloud::Label>(label[lane]);
   }
 }
 
@@ -125,13 +151,39 @@ bool RayPacket::has_special() const {
   return any;
 }
 
+[[gnu::always_inline]] inline void RayPacket::Block::offer_bin(const std::vector<SolidBox>& bin, BoxFlags boxes,
+                                                               double depth_min) {
+  DirectionOf<Lanes> inverse;
+  invert(directions, inverse);
+  for (std::size_t i = 0; i < bin.size(); ++i)
+    if (boxes & box_flag(i)) take(bin[i], inverse, 0, depth_min);
+}
+
 TUBEBIN_WIDE void RayPacket::offer_bin(const std::vector<SolidBox>& bin, BoxFlags boxes) {
-  for (Block& block : blocks_) {
-    DirectionOf<Lanes> inverse;
-    invert(block.directions, inverse);
-    for (std::size_t i = 0; i < bin.size(); ++i)
-      if (boxes & box_flag(i)) block.take(bin[i], inverse, 0, depth_min_);
+  for (Block& block : blocks_) block.offer_bin(bin, boxes, depth_min_);
+}
+
+TUBEBIN_WIDE bool RayPacket::get_bin_points(const scene::Camera& camera, int column, int row,
+                                            const std::vector<SolidBox>& bin, BoxFlags boxes, double depth_min,
+                                            double depth_max, std::span<cloud::Point> points) {
+  const Eigen::Matrix3d axes = camera.world_from_scanner().linear();
+  const Vec3 origin = camera.world_from_scanner().translation();
+  const double y = slope_down(camera, row);
+  Lanes x;
+  set_centers(column, x);
+  LaneFlags special = {};
+  for (std::size_t begin = 0; begin < points.size(); begin += kBlockLanes) {
+    Block block;
+    block.aim(x, y, camera, axes);
+    block.offer_bin(bin, boxes, depth_min);
+    special |= block.begins_inside;
+    block.forget_beyond(depth_max);
+    block.get_points(origin, points.subspan(begin));
+    x += kBlockLanes;
   }
+  bool any = false;
+  for (int lane = 0; lane < kBlockLanes; ++lane) any |= special[lane] != 0;
+  return !any;
 }
 
 TUBEBIN_WIDE void RayPacket::offer(const Labelled<SolidBox>& box) {

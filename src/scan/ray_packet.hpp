@@ -34,6 +34,12 @@ class RayPacket {
   /// Through the pixel and those to its right.
   RayPacket(const scene::Camera& camera, int column, int row, double depth_min);
 
+  /// The points of the pixels from (column, row) on to the right, as packets give them that are offered these `boxes` of the
+  /// bin, forget what lies beyond depth_max, and meet nothing else: most pixels are such. Returns false, and leaves the
+  /// points unsettled, where a ray is special.
+  static bool get_bin_points(const scene::Camera& camera, int column, int row, const std::vector<SolidBox>& bin,
+                             BoxFlags boxes, double depth_min, double depth_max, std::span<cloud::Point> points);
+
   /// Each lane takes the solid's first point if it is nearer than what it has. Equal depths go to the lower label, so
   /// that the result does not depend on the order of the solids.
   void offer_bin(const std::vector<SolidBox>& bin, BoxFlags boxes = kAllBoxes);
@@ -68,6 +74,10 @@ class RayPacket {
     LaneFlags begins_inside = {};
     LaneFlags enters_bore = {};  ///< at `depth`
 
+    void aim(const Lanes& x, double y, const scene::Camera& camera, const Eigen::Matrix3d& axes);
+    void offer_bin(const std::vector<SolidBox>& bin, BoxFlags boxes, double depth_min);
+    void forget_beyond(double depth_max);
+    void get_points(const Vec3& origin, std::span<cloud::Point> points) const;
     void take(const IntervalOf<Lanes>& inside, cloud::Label label_inside, double depth_min);
     void take(const SolidBox& box, const DirectionOf<Lanes>& inverse, cloud::Label label_inside, double depth_min);
   };

@@ -31,15 +31,35 @@ scene::PixelWindow whole_image(const scene::Camera& camera) { return {0, 0, came
 using PointsOfRow =
     std::function<void(int column, int row, std::span<cloud::Point> points, std::span<cloud::Label> labels)>;
 
+/// Of a row's pixels, packet by packet.
+void find_exact_points(const RayCaster& caster, const scene::Camera& camera, const PacketBodies& bodies, int column,
+                       int row, std::span<cloud::Point> points, std::span<cloud::Label> labels) {
+  const Vec3 scanner_in_world = camera.world_from_scanner().translation();
+  for (std::size_t begin = 0; begin < points.size(); begin += kLanes) {
+    const std::size_t count = std::min<std::size_t>(kLanes, points.size() - begin);
+    const int first_column = column + static_cast<int>(begin);
+    RayPacket packet(camera, first_column, row, caster.depth_min());
+    caster.find_first_hits(packet, static_cast<int>(count), bodies.at(first_column, row));
+    packet.get_first_points(scanner_in_world, points.subspan(begin, count), labels.subspan(begin, count));
+  }
+}
+
 PointsOfRow exact_points(const RayCaster& caster, const scene::Camera& camera, const PacketBodies& bodies) {
   return [&](int column, int row, std::span<cloud::Point> points, std::span<cloud::Label> labels) {
-    const Vec3 scanner_in_world = camera.world_from_scanner().translation();
-    for (std::size_t begin = 0; begin < points.size(); begin += kLanes) {
-      const std::size_t count = std::min<std::size_t>(kLanes, points.size() - begin);
+    for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
+      const auto bodies_at = [&](std::size_t i) -> const BodiesInReach& {
+        return bodies.at(column + static_cast<int>(i), row);
+      };
+      const BodiesInReach& here = bodies_at(begin);
+      do end = std::min(end + kLanes, points.size());
+      while (end < points.size() && bodies_at(end).boxes == here.boxes &&
+             (bodies_at(end).solid_count == 0) == (here.solid_count == 0));
       const int first_column = column + static_cast<int>(begin);
-      RayPacket packet(camera, first_column, row, caster.depth_min());
-      caster.find_first_hits(packet, static_cast<int>(count), bodies.at(first_column, row));
-      packet.get_first_points(scanner_in_world, points.subspan(begin, count), labels.subspan(begin, count));
+      const std::span points_here = points.subspan(begin, end - begin);
+      const std::span labels_here = labels.subspan(begin, end - begin);
+      if (here.solid_count == 0 && caster.find_bin_points(camera, first_column, row, here.boxes, points_here))
+        std::ranges::fill(labels_here, 0);
+      else find_exact_points(caster, camera, bodies, first_column, row, points_here, labels_here);
     }
   };
 }
@@ -55,28 +75,44 @@ PointsOfRow measured_points(const Measurement& measurement, const Reconstruction
   };
 }
 
-void resize_empty(cloud::Cloud& cloud, const scene::PixelWindow& window) {
+/// What lies outside `seen` is empty; what lies within has yet to be set.
+void resize(cloud::Cloud& cloud, const scene::PixelWindow& window, const scene::PixelWindow& seen) {
   const auto pixels = static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
   cloud.width = static_cast<std::uint32_t>(window.width);
   cloud.height = static_cast<std::uint32_t>(window.height);
-  cloud.points.assign(pixels, kNoPoint);
+  if (seen == window) cloud.points.resize(pixels);
+  else cloud.points.assign(pixels, kNoPoint);
   cloud.colors.assign(pixels, cloud::kNullColor);
   cloud.labels.assign(pixels, 0);
 }
 
 /// Neighbours mostly have the same label.
-void count_pixels(std::span<const cloud::Label> labels, std::vector<std::size_t>& tube_pixels) {
-  for (auto run = labels.begin(); run != labels.end();) {
-    const auto end = std::find_if(run, labels.end(), [run](cloud::Label label) { return label != *run; });
-    if (*run > 0) tube_pixels[*run - 1] += static_cast<std::size_t>(end - run);
-    run = end;
+template <typename VisitRun>
+void for_each_run(std::span<const cloud::Label> labels, const VisitRun& visit) {
+  for (std::size_t begin = 0, end = 0; begin < labels.size(); begin = end) {
+    while (end < labels.size() && labels[end] == labels[begin]) ++end;
+    visit(labels[begin], begin, end);
   }
+}
+
+void count_pixels(std::span<const cloud::Label> labels, std::vector<std::size_t>& tube_pixels) {
+  for_each_run(labels, [&](cloud::Label label, std::size_t begin, std::size_t end) {
+    if (label > 0) tube_pixels[label - 1] += end - begin;
+  });
+}
+
+void color_pixels(std::span<const cloud::Point> points, std::span<const cloud::Label> labels,
+                  std::span<const cloud::Color> colors, std::span<cloud::Color> pixels) {
+  for_each_run(labels, [&](cloud::Label label, std::size_t begin, std::size_t end) {
+    const cloud::Color color = colors[label];
+    for (std::size_t i = begin; i < end; ++i) pixels[i] = std::isnan(points[i].x()) ? cloud::kNullColor : color;
+  });
 }
 
 /// One point a pixel of `scan.window`; what lies outside `seen` shows nothing.
 void scan_organized(const PointsOfRow& points_of_row, const scene::PixelWindow& seen,
                     const std::vector<cloud::Color>& colors, Scan& scan) {
-  resize_empty(scan.cloud, scan.window);
+  resize(scan.cloud, scan.window, seen);
   const auto width = static_cast<std::size_t>(seen.width);
   for (int row = seen.y; row < seen.y + seen.height; ++row) {
     const auto begin = static_cast<std::size_t>(row - scan.window.y) * scan.cloud.width +
@@ -85,8 +121,7 @@ void scan_organized(const PointsOfRow& points_of_row, const scene::PixelWindow& 
     const std::span<cloud::Label> labels = std::span(scan.cloud.labels).subspan(begin, width);
     points_of_row(seen.x, row, points, labels);
     count_pixels(labels, scan.tube_pixels);
-    for (std::size_t i = 0; i < width; ++i)
-      if (!std::isnan(points[i].x())) scan.cloud.colors[begin + i] = colors[labels[i]];
+    color_pixels(points, labels, colors, std::span(scan.cloud.colors).subspan(begin, width));
   }
 }
 

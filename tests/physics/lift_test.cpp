@@ -40,6 +40,9 @@ TEST(Lift, AFreeTubeWeighsWhatItWeighsAndLeavesTheOthersAlone) {
   EXPECT_TRUE(result.dragged.empty());
   ASSERT_EQ(result.rest.tubes.size(), 1u);
   EXPECT_LT(largest_movement(nodes_in_world({pile[1]}), nodes_in_world(result.rest.tubes)), 0.0005);
+  const PhysicsOptions options;
+  EXPECT_GE(result.rest.figures.simulated_seconds, options.check_time);
+  EXPECT_LT(result.rest.figures.simulated_seconds, options.check_time + options.rest_window) << "it was at rest before";
 }
 
 TEST(Lift, WhatLiesAcrossIsDraggedAndWeighsOnIt) {

@@ -81,6 +81,47 @@ TEST(RayPacket, GivesThePointsOfTheFirstLanes) {
   EXPECT_EQ(labels, (std::vector<cloud::Label>{7, 0, 7}));
 }
 
+TEST(RayPacket, GivesTheBinsPointsAtOnceAsPacketsDo) {
+  scene::Scene scene;
+  scene.bin.draft_deg = 5.0;
+  scene.scanner.position = {0.1, -0.2, 2.0};
+  scene.scanner.rotation_deg = {20.0, 5.0, 30.0};
+  scene.scanner.width = 100;
+  scene.scanner.height = 60;
+  const scene::Camera camera(scene.scanner);
+  const std::vector<SolidBox> bin = scene_solids(scene).bin;
+  constexpr double kDepthMin = 0.1, kDepthMax = 2.2;  // cuts some of the floor off
+  constexpr int kColumn = 3, kCount = 93;             // ends within a block of lanes
+  int found = 0, missed = 0;
+  for (int row = 0; row < camera.height(); ++row) {
+    std::vector<cloud::Point> points(kCount), expected(kCount);
+    std::vector<cloud::Label> labels(kCount);
+    ASSERT_TRUE(RayPacket::get_bin_points(camera, kColumn, row, bin, kAllBoxes, kDepthMin, kDepthMax, points));
+    for (std::size_t begin = 0; begin < kCount; begin += kLanes) {
+      const std::size_t count = std::min<std::size_t>(kLanes, kCount - begin);
+      RayPacket packet(camera, kColumn + static_cast<int>(begin), row, kDepthMin);
+      packet.offer_bin(bin);
+      packet.forget_beyond(kDepthMax);
+      packet.get_first_points(scene.scanner.position, std::span(expected).subspan(begin, count),
+                              std::span(labels).subspan(begin, count));
+    }
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const bool is_found = cloud::is_finite(expected[i]);
+      ++(is_found ? found : missed);
+      ASSERT_EQ(cloud::is_finite(points[i]), is_found);
+      if (is_found) {
+        ASSERT_EQ(points[i], expected[i]);
+      }
+    }
+  }
+  EXPECT_GT(found, 100);
+  EXPECT_GT(missed, 100);
+  std::vector<cloud::Point> points(4);
+  const std::vector<SolidBox> around = {SolidBox(scene::Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)))};
+  EXPECT_FALSE(RayPacket::get_bin_points(camera, 0, 0, around, kAllBoxes, kDepthMin, kDepthMax, points))
+      << "rays that begin inside";
+}
+
 TEST(RayPacket, MarksLanesThatBeginInsideOrEnterABore) {
   const std::vector<Vec3> directions = {{0, 0, 1}, {0.6, 0, 1}, {0.012, 0, 1}};
   RayPacket inside(directions, 0.1);

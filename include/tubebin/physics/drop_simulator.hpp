@@ -83,7 +83,8 @@ struct DropResult {
   DropFailure failure = DropFailure::none;
   std::string detail;  ///< "tube 3 left the bin", empty without a failure
   std::vector<scene::PlacedTube> tubes;
-  std::vector<scene::Contact> contacts;  ///< of the finished scene
+  std::vector<tube::MassProperties> masses;  ///< of these
+  std::vector<scene::Contact> contacts;      ///< of the finished scene
   DropFigures figures;
   std::shared_ptr<const PileForces> forces;  ///< that hold the finished scene; a lift goes on from them
 };
