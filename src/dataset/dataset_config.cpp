@@ -252,6 +252,9 @@ std::vector<std::string> differences(const DatasetConfig& there, const DatasetCo
   constexpr auto kNothing = "nothing";
   DatasetConfig there_fields = there;
   DatasetConfig here_fields = here;
+  if (there.bin.mesh != here.bin.mesh)  // the names of their content would mean nothing to the user
+    for (DatasetConfig* config : {&there_fields, &here_fields})
+      if (config->bin.surface) config->bin.mesh = config->bin.surface->path;
   const std::vector<KeyValue> a = list_fields(fields_of(there_fields));
   const std::vector<KeyValue> b = list_fields(fields_of(here_fields));
   std::vector<std::string> differing;

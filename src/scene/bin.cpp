@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/path_status.hpp"
 #include "tubebin/scene/scene.hpp"
 
 namespace tubebin::scene {
@@ -174,7 +175,7 @@ void check_mesh(const Bin& bin, const KeyPlaces& places, const std::string& pref
   if (!bin.is_box())
     places.fail(prefix + ".mesh", fmt::format("'{}' is not valid beside draft_deg, rim_width or corner_radius; valid: "
                                               "one or the other, a mesh has walls of its own",
-                                              bin.mesh));
+                                              bin.surface->path));
   const Box inner(Vec3(-bin.length / 2.0, -bin.width / 2.0, 0.0), Vec3(bin.length / 2.0, bin.width / 2.0, bin.height));
   const Box bounds = bin_bounds(bin);
   const Vec3 rounding = Vec3::Constant(1e-6);  // metres; STL's numbers are single
@@ -184,9 +185,10 @@ void check_mesh(const Bin& bin, const KeyPlaces& places, const std::string& pref
         inner.max()[axis] > bounds.max()[axis] + rounding[axis])
       places.fail(
           prefix + keys[axis],
-          fmt::format("{} m is not valid; valid: a space within the mesh, which reaches from {:.6g} to {:.6g} m "
+          fmt::format("{} m is not valid; valid: a space within the mesh of {}, which reaches from {:.6g} to {:.6g} m "
                       "along {} (mesh_scale {}; the middle of the floor is the origin)",
-                      inner.sizes()[axis], bounds.min()[axis], bounds.max()[axis], "xyz"[axis], bin.mesh_scale));
+                      inner.sizes()[axis], bin.surface->path, bounds.min()[axis], bounds.max()[axis], "xyz"[axis],
+                      bin.mesh_scale));
 }
 
 }  // namespace
@@ -201,6 +203,9 @@ const std::vector<Triangle>& mesh_triangles(const Bin& bin) {
 
 void load_mesh(Bin& bin, const std::string& folder) {
   if (!bin.has_mesh()) return;
+  if (is_regular_file(folder))
+    throw_io_error("{}: a pack does not hold the mesh of its bin, {}; valid: the data set's folder, which does", folder,
+                   bin.mesh);
   const std::string path = (std::filesystem::path(folder) / bin.mesh).string();
   constexpr std::uint64_t kBytesMax = 100'000'000;  // ten times what a binary file may need: ASCII is longer
   bin.surface = std::make_shared<const BinMesh>(parse_stl(read_file(path, kBytesMax), path, bin.mesh_scale));

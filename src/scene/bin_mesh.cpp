@@ -48,6 +48,7 @@ class MeshBuilder {
   BinMesh build(std::string stl) && {
     if (mesh_.triangles.empty()) throw_io_error("{}: no triangle has an area; valid: at least one that does", name_);
     mesh_.stl = std::move(stl);
+    mesh_.path = name_;
     return std::move(mesh_);
   }
 

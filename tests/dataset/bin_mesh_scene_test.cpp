@@ -5,6 +5,7 @@
 
 #include "support/commands.hpp"
 #include "support/faults.hpp"
+#include "support/program.hpp"
 #include "support/stl.hpp"
 #include "tubebin/scan/scanner.hpp"
 #include "tubebin/scene/scene_json.hpp"
@@ -71,12 +72,43 @@ TEST_F(BinMesh, AnInnerSpaceBeyondTheMeshIsRefused) {
   EXPECT_THAT(run_generate_dataset({folder_ / "mesh.yaml", "--output", data_}).error,
               HasSubstr("box.stl: line 4: -295 is not valid; valid: finite, and at most 100 m"));
   write_text(folder_ / "mesh.yaml", "bin: {mesh: parts/box.stl, mesh_scale: 0.001, height: 0.3}\n");
-  EXPECT_THAT(
-      run_generate_dataset({folder_ / "mesh.yaml", "--output", data_}).error,
-      AllOf(HasSubstr("mesh.yaml:1:"), HasSubstr("bin.height: 0.3 m is not valid"), HasSubstr("0.2 m along z")));
+  EXPECT_THAT(run_generate_dataset({folder_ / "mesh.yaml", "--output", data_}).error,
+              AllOf(HasSubstr("mesh.yaml:1:"), HasSubstr("bin.height: 0.3 m is not valid"),
+                    HasSubstr("parts/box.stl, which reaches"), HasSubstr("0.2 m along z")));
   write_text(folder_ / "mesh.yaml", "bin: {mesh: parts/box.stl, mesh_scale: 0.001, draft_deg: 2}\n");
   EXPECT_THAT(run_generate_dataset({folder_ / "mesh.yaml", "--output", data_}).error,
-              HasSubstr("not valid beside draft_deg, rim_width or corner_radius"));
+              HasSubstr("parts/box.stl' is not valid beside draft_deg, rim_width or corner_radius"));
+}
+
+TEST_F(BinMesh, AnotherMeshThanTheDataSetsIsNamedAsTheUserDoes) {
+  ASSERT_EQ(make().exit_code, 0);
+  write_text(folder_ / "parts/box.stl", ascii_stl(triangles_of(scene::bin_parts({.length = 0.6})), 1000.0));
+  EXPECT_THAT(make().error, AllOf(HasSubstr("another configuration"), HasSubstr("bin.mesh: \"" + data_ + "/bin-"),
+                                  HasSubstr(".stl\" there, \"" + folder_ / "parts/box.stl\" here")));
+}
+
+TEST_F(BinMesh, APackAloneSaysThatItHasNoMesh) {
+  write_text(folder_ / "mesh.yaml", kMeshConfig);
+  ASSERT_EQ(run_generate_dataset({folder_ / "mesh.yaml", "--output", data_, "--pack"}).exit_code, 0);
+  EXPECT_THAT(verify(), HasSubstr("2 scenes checked, 0 damaged"));
+  const std::string pack = data_ + "/packs/00001-of-00001.tar";
+  const ProgramResult alone =
+      Program({program_path("export_dataset"), pack, "--format", "ply", "--output", folder_ / "ply"}).wait();
+  EXPECT_EQ(alone.exit_code, 3);
+  EXPECT_THAT(alone.error, HasSubstr("00001-of-00001.tar: a pack does not hold the mesh of its bin, bin-"));
+}
+
+TEST_F(BinMesh, TheExampleGivesScenesThatPassVerification) {
+  const ProgramResult made =
+      run_generate_dataset({TUBEBIN_SOURCE_DIR "/config/mesh_bin.yaml", "--output", data_, "--cases", "1"});
+  ASSERT_EQ(made.exit_code, 0) << made.error;
+  EXPECT_THAT(verify(), HasSubstr("1 scenes checked, 0 damaged"));
+}
+
+TEST_F(BinMesh, TheExamplesTubIsWhatItsScriptWrites) {
+  const CommandResult made = run_command("python3 " TUBEBIN_SOURCE_DIR "/scripts/make_tub.py");
+  ASSERT_EQ(made.exit_code, 0) << made.output;
+  EXPECT_EQ(made.output, read_text(TUBEBIN_SOURCE_DIR "/config/tub.stl"));
 }
 
 }  // namespace

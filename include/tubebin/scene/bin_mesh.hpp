@@ -26,7 +26,8 @@ constexpr std::size_t kMeshTrianglesMax = 300000;
 struct BinMesh {
   std::vector<Triangle> triangles;  ///< without those that have no area
   Eigen::AlignedBox3d bounds;
-  std::string stl;  ///< the file's bytes
+  std::string stl;   ///< the file's bytes
+  std::string path;  ///< of that file, as messages name it
 
   /// "bin-<XXH3 128-bit hash of the file>.stl", what a data set calls its copy.
   std::string file_name() const;
