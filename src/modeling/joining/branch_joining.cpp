@@ -25,7 +25,7 @@ constexpr double kTreeLengthCostLimit = 10.0;
 /// Radii: each path's length is off by as much, where it is led up to another and where it bends out of sight.
 constexpr double kLengthScatter = 1.0;
 /// Where the common length is not told, it is off, too.
-constexpr double kFoundLengthScatter = 2.0;
+constexpr double kFoundLengthScatter = 1.5;
 
 /// How far a forest is searched for: roughly to tell lengths apart, thoroughly once the length is known.
 struct Search {
