@@ -55,9 +55,10 @@ void append_binary(std::string& out, const Cloud& cloud) {
     char* field = block.data();
     const auto put = [&](const auto& values) {
       if (values.empty()) return;
-      const auto* from = values.data() + begin;
-      for (std::size_t i = 0; i < count; ++i) std::memcpy(field + i * stride, from + i, sizeof(*from));
-      field += sizeof(*from);
+      constexpr std::size_t kSize = sizeof(values[0]);
+      const char* from = reinterpret_cast<const char*>(values.data() + begin);
+      for (std::size_t i = 0; i < count; ++i) std::memcpy(field + i * stride, from + i * kSize, kSize);
+      field += kSize;
     };
     put(cloud.points);
     put(cloud.colors);
