@@ -6,7 +6,6 @@
 #include <numbers>
 #include <optional>
 #include <queue>
-#include <ranges>
 #include <set>
 #include <unordered_map>
 
@@ -55,10 +54,6 @@ struct Forest {
   std::vector<Tree> possible;
   std::vector<PathCandidate> candidates;  ///< the possible trees as sets of paths
   PathCover cover;
-
-  auto trees() const {
-    return cover.chosen | std::views::transform([&](std::uint32_t c) -> const Tree& { return possible[c]; });
-  }
 };
 
 class TreeJoiner {
@@ -114,7 +109,8 @@ class TreeJoiner {
   /// of that length. One that all lengths up to it are as likely for has it but once in length / (sqrt(2 pi) sigma).
   double cost_of_length(const Forest& forest, double tube_length) const {
     double cost = 0.0, all = 0.0, as_long = 0.0;
-    for (const Tree& tree : forest.trees()) {
+    for (const std::uint32_t c : forest.cover.chosen) {
+      const Tree& tree = forest.possible[c];
       const double sigma = length_sigma(tree.paths.size());
       all += tree.length;
       cost += tree.cost;
