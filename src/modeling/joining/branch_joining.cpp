@@ -330,11 +330,11 @@ std::vector<TubeModel> join_likely_branches(const std::vector<TubePath>& paths, 
   std::vector<BranchLink> links = find_branch_links(pieces, ends, occlusion, 0.0);
   std::erase_if(links, is_no_branch);
   keep_one_of_each_branch(links);
-  // One that looks like a branch may be a tube's end that touches another's side.
-  if (links.size() == 1) {
-    const double distance = distance_to_polyline(ends[links[0].end].position, pieces[links[0].other].nodes);
-    if (distance > 0.75 * radius && distance < 1.3 * radius) links.clear();
-  }
+  // Where no end is surely within another tube, what looks like branches are tubes that end beside others by chance.
+  const auto is_sure = [&](const BranchLink& link) {
+    return link.cost <= kOnSideCost && (link.place - ends[link.end].position).norm() <= 0.75 * radius;
+  };
+  if (std::ranges::none_of(links, is_sure)) links.clear();
   const TreeJoiner joiner(pieces, std::move(ends), std::move(links), radius);
   std::vector<TubeModel> tubes;
   for (Tree& tree : joiner.likely_trees(0.0)) {
