@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "modeling/lid_scene.hpp"
 
@@ -45,6 +46,13 @@ TEST_F(BranchJoining, AmongTubesOfOneLengthOnlyWhatIsNotAsLongIsABranch) {
   EXPECT_EQ(tubes_of_length(0.3, 0.5 * kRadius).size(), 2u);  // the trunk is whole
   EXPECT_EQ(tubes_of_length(0.5, 2.1 * kRadius).size(), 2u);
   EXPECT_TRUE(join_likely_branches({}, kRadius, occlusion(), 0.0).empty());
+}
+
+TEST_F(BranchJoining, AHiddenBranchIsLikelyOnlyWhereAnotherIsSure) {
+  std::vector<TubePath> paths = tree(0.0, 2.0 * kRadius);  // starts under the lid
+  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0).size(), 2u);
+  std::ranges::copy(tree(0.3, 0.5 * kRadius), std::back_inserter(paths));
+  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0).size(), 2u);  // two trees
 }
 
 /// Under the lid a branch's start is out of sight, and so is whether it is one.

@@ -121,7 +121,7 @@ class TreeJoiner {
     return as_long >= all / 2.0 ? cost : std::numeric_limits<double>::infinity();
   }
 
-  /// The cheapest one where the tubes have this length, metres.
+  /// The cheapest forest where the tubes have this length, metres.
   Forest cheapest_forest(double tube_length, double scatter, const Search& search) {
     tube_length_ = tube_length;
     scatter_ = scatter;
@@ -146,7 +146,7 @@ class TreeJoiner {
     return best;
   }
 
-  /// Its trees, with their odds.
+  /// The forest's trees, with their odds.
   std::vector<Tree> trees_of(const Forest& forest) const {
     const CoverMargins margins(forest.cover, forest.candidates, {});
     std::vector<Tree> trees;
@@ -323,7 +323,7 @@ std::vector<TubeModel> join_likely_branches(const std::vector<TubePath>& paths, 
   const auto is_whole = [&](const TubePiece& path) { return std::abs(path.length() - whole) <= radius; };
   const auto is_no_branch = [&](const BranchLink& link) {
     const TubePiece &branch = pieces[link.end / 2], &trunk = pieces[link.other];
-    return link.other_end || branch.length() < 4.0 * radius || is_whole(branch) || is_whole(trunk) ||
+    return link.other_end || !is_long(branch) || is_whole(branch) || is_whole(trunk) ||
            (tube_length > 0.0 && branch.length() + trunk.length() > tube_length + 2.0 * radius);
   };
   std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion, 40.0 * radius);

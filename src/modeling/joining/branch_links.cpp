@@ -102,9 +102,9 @@ std::optional<BranchLink> side_link(const PieceEnd& end, const TubePiece& other,
   return link->cost < cost_limit ? link : std::nullopt;
 }
 
-bool is_long(const TubePiece& piece) { return piece.length() >= 4.0 * piece.radius; }
-
 }  // namespace
+
+bool is_long(const TubePiece& piece) { return piece.length() >= 4.0 * piece.radius; }
 
 std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const std::vector<Vec3>& nodes, double radius) {
   // Closer than nine tenths of a radius, to leave room for what fits are off.

@@ -27,8 +27,11 @@ struct BranchLink {
 /// other path's own ends, where one may go on as the other.
 std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const std::vector<Vec3>& nodes, double radius);
 
-/// Whether pieces show that the scene's tubes branch: but for one of them, more than one in thirty meets another's side and
-/// is as long as two diameters, longer than the bits of surface beside bends. Of chance one in some thousand does.
+/// As long as two diameters, longer than the bits of surface beside bends.
+bool is_long(const TubePiece& piece);
+
+/// Whether pieces show that the scene's tubes branch: but for one of them, more than one in thirty is long and meets another's
+/// side. Of chance one in some thousand does.
 bool show_branches(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends);
 
 /// The links that the evidence does not rule out (cost below `cost_limit`), cheapest first.
