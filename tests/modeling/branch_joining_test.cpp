@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <iterator>
-
 #include "modeling/lid_scene.hpp"
 
 namespace tubebin::modeling {
@@ -48,17 +45,27 @@ TEST_F(BranchJoining, AmongTubesOfOneLengthOnlyWhatIsNotAsLongIsABranch) {
   EXPECT_TRUE(join_likely_branches({}, kRadius, occlusion(), 0.0).empty());
 }
 
-TEST_F(BranchJoining, AHiddenBranchIsLikelyOnlyWhereAnotherIsSure) {
-  std::vector<TubePath> paths = tree(0.0, 2.0 * kRadius);  // starts under the lid
-  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0).size(), 2u);
-  std::ranges::copy(tree(0.3, 0.5 * kRadius), std::back_inserter(paths));
-  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0).size(), 2u);  // two trees
+TEST_F(BranchJoining, WhatWouldBecomeLongerThanALengthThatRecursIsNoTube) {
+  std::vector<TubePath> paths = tree(0.3, 0.5 * kRadius);
+  for (const double y : {-0.2, -0.3, -0.4}) paths.push_back(path({{-0.125, y, 0}, {0.125, y, 0}}));
+  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0).size(), 5u);
+  paths.pop_back();
+  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0).size(), 3u);
+}
+
+/// What tells a branch from a flat end that touches a side is in sight or is not.
+TEST_F(BranchJoining, AFlatEndThatTouchesASideIsABranchOnlyWhereTheWedgeBetweenThemIsHidden) {
+  const auto tubes_at = [&](double y) {
+    return join_likely_branches(tree(y, 1.1 * kRadius), kRadius, occlusion(), 0.0).size();
+  };
+  EXPECT_EQ(tubes_at(0.3), 2u);
+  EXPECT_EQ(tubes_at(0.0), 1u);  // under the lid
 }
 
 /// Under the lid a branch's start is out of sight, and so is whether it is one.
 TEST_F(BranchJoining, AKnownLengthDecidesWhatTheLidHides) {
   const auto tubes_of_length = [&](double length) {
-    return join_branches(tree(0.0, 0.045), kRadius, occlusion(), length);
+    return join_branches(tree(0.0, 0.038), kRadius, occlusion(), length);
   };
   EXPECT_EQ(tubes_of_length(0.0).size(), 2u);  // not known
   EXPECT_EQ(tubes_of_length(0.3).size(), 2u);

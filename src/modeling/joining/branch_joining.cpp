@@ -26,6 +26,9 @@ constexpr double kLengthScatter = 1.0;
 /// Where the common length is not told, it is off, too.
 constexpr double kFoundLengthScatter = 1.5;
 
+/// -log of how seldom (1 in 8) a branch whose start is in view is not fitted up to the other path's side.
+constexpr double kUnfittedCost = 2.1;
+
 /// How far a forest is searched for: roughly to tell lengths apart, thoroughly once the length is known.
 struct Search {
   std::size_t trees_per_path, cover_nodes;
@@ -323,18 +326,15 @@ std::vector<TubeModel> join_likely_branches(const std::vector<TubePath>& paths, 
   const auto is_whole = [&](const TubePiece& path) { return std::abs(path.length() - whole) <= radius; };
   const auto is_no_branch = [&](const BranchLink& link) {
     const TubePiece &branch = pieces[link.end / 2], &trunk = pieces[link.other];
-    return link.other_end || !is_long(branch) || is_whole(branch) || is_whole(trunk) ||
-           (tube_length > 0.0 && branch.length() + trunk.length() > tube_length + 2.0 * radius);
+    return link.other_end || link.cost >= 0.0 || !is_long(branch) || is_whole(branch) || is_whole(trunk) ||
+           branch.length() + trunk.length() > whole + 2.0 * radius;
   };
   std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion, 40.0 * radius);
   std::vector<BranchLink> links = find_branch_links(pieces, ends, occlusion, 0.0);
+  for (BranchLink& link : links) link.cost += kUnfittedCost * link.in_view;
+  std::ranges::sort(links, {}, &BranchLink::cost);
   std::erase_if(links, is_no_branch);
   keep_one_of_each_branch(links);
-  // Where no end is surely within another tube, what looks like branches are tubes that end beside others by chance.
-  const auto is_sure = [&](const BranchLink& link) {
-    return link.cost <= kOnSideCost && (link.place - ends[link.end].position).norm() <= 0.75 * radius;
-  };
-  if (std::ranges::none_of(links, is_sure)) links.clear();
   const TreeJoiner joiner(pieces, std::move(ends), std::move(links), radius);
   std::vector<TubeModel> tubes;
   for (Tree& tree : joiner.likely_trees(0.0)) {

@@ -14,9 +14,9 @@ namespace tubebin::modeling {
 std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double radius, const OcclusionTest& occlusion,
                                      double tube_length);
 
-/// The same where few tubes branch or none. Where one path surely starts on another's side, those that likelier do than not are
-/// branches; all others are tubes by themselves. A path as long as the tubes have in common (`tube_length`, metres; 0: the
-/// longest length that recurs) is whole, neither a branch nor a trunk; no tube is longer than a common length.
+/// The same where few tubes branch or none: the paths that start at another's side likelier than not are branches. A path as
+/// long as the tubes have in common (`tube_length`, metres; 0: the longest length that recurs) is whole, neither a branch nor
+/// a trunk; no tube becomes longer.
 std::vector<TubeModel> join_likely_branches(const std::vector<TubePath>& paths, double radius,
                                             const OcclusionTest& occlusion, double tube_length);
 

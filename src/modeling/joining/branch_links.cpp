@@ -9,6 +9,8 @@ namespace {
 
 /// -log of how seldom (1 in 100) a place that a tube takes up is measured as empty.
 constexpr double kEmptyLinkCost = 4.6;
+/// radii^2 of a branch's side that is seen through and counts as one place: a few cells of the view.
+constexpr double kSeenThroughOnce = 0.25;
 /// In radii: what is farther ahead is met by chance as likely as by a branch.
 constexpr double kReach = 12.0;
 
@@ -29,6 +31,36 @@ std::vector<Vec3> line_between(const Vec3& tip, const Vec3& place, double radius
   std::vector<Vec3> line;
   for (int i = 0; i <= steps; ++i) line.push_back(tip + double(i) / steps * (place - tip));
   return line;
+}
+
+/// What the scan says of a branch's side between its tip and its place on the other path.
+struct SideEvidence {
+  double in_view = 0.0;       ///< part of what is turned to a scanner that is not hidden
+  double seen_through = 0.0;  ///< radii^2, clear of the other path's surface
+};
+
+SideEvidence examine_side(const Vec3& tip, const Vec3& place, const TubePiece& other, const OcclusionTest& occlusion) {
+  using Evidence = RangeImage::Evidence;
+  constexpr int kAround = 48;  // samples, and as far apart along the branch
+  constexpr double kStep = 2.0 * std::numbers::pi / kAround;
+  const double radius = other.radius, length = (place - tip).norm();
+  const Vec3 along = (place - tip) / length;
+  const Vec3 right = along.unitOrthogonal(), up = along.cross(right);
+  int facing = 0, in_view = 0, seen_through = 0;
+  for (double ahead = 0.5 * kStep * radius; ahead < length; ahead += kStep * radius)
+    for (int k = 0; k < kAround; ++k) {
+      const Vec3 normal = std::cos(k * kStep) * right + std::sin(k * kStep) * up;
+      const Vec3 at = tip + ahead * along + radius * normal;
+      const double off = distance_to_polyline(at, other.nodes);
+      if (off < radius) continue;
+      const Evidence seen = occlusion.facing(at, normal);
+      if (seen == Evidence::outside) continue;
+      const bool is_empty = seen == Evidence::empty || seen == Evidence::no_data || seen == Evidence::beyond;
+      ++facing;
+      in_view += is_empty || seen == Evidence::surface;
+      seen_through += is_empty && off > 1.25 * radius;
+    }
+  return {.in_view = facing > 0 ? double(in_view) / facing : 0.0, .seen_through = seen_through * kStep * kStep};
 }
 
 /// What the scene's paths are like.
@@ -90,8 +122,10 @@ std::optional<BranchLink> likeliest_side(const PieceEnd& end, const TubePiece& o
 
 std::optional<BranchLink> side_link(const PieceEnd& end, const TubePiece& other, const OcclusionTest& occlusion,
                                     const Surroundings& around, double cost_limit) {
-  if (const auto place = place_on_side(end.position, end.outward, other.nodes, around.radius))
-    return BranchLink{.place = *place, .length = (*place - end.position).norm(), .cost = kOnSideCost};
+  // Fits are off by less than a quarter of a radius, so no flat end seems to lie nearer than the rest.
+  const auto on_side = place_on_side(end.position, end.outward, other.nodes, around.radius);
+  if (on_side && (*on_side - end.position).norm() <= 0.75 * around.radius)
+    return BranchLink{.place = *on_side, .length = (*on_side - end.position).norm(), .cost = kOnSideCost};
   auto link = likeliest_side(end, other, around);
   if (!link) return std::nullopt;
   link->cost += kEmptyLinkCost * end.seen_free;
@@ -99,6 +133,10 @@ std::optional<BranchLink> side_link(const PieceEnd& end, const TubePiece& other,
   const double samples = std::max(link->length / (2.0 * around.radius), 1.0);
   link->cost +=
       kEmptyLinkCost * samples * occlusion.empty_part(line_between(end.position, link->place, around.radius), 1.0);
+  if (link->cost >= cost_limit) return std::nullopt;
+  const SideEvidence side = examine_side(end.position, link->place, other, occlusion);
+  link->cost += kEmptyLinkCost * std::min(side.seen_through / kSeenThroughOnce, 1.0);
+  link->in_view = side.in_view;
   return link->cost < cost_limit ? link : std::nullopt;
 }
 

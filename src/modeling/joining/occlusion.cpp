@@ -122,6 +122,16 @@ StretchEvidence OcclusionTest::evidence_across(const Vec3& center, const Vec3& d
   return {sum.hidden / count, sum.surface / count, sum.empty / count, sum.no_data / count};
 }
 
+RangeImage::Evidence OcclusionTest::facing(const Vec3& place, const Vec3& normal) const {
+  // Surfaces seen more obliquely are off in range by more than the tolerance within a cell.
+  constexpr double kFacing = 0.3;
+  RangeImage::Evidence seen = RangeImage::Evidence::outside;
+  for (const View& view : *views_)
+    if ((view.viewpoint - place).normalized().dot(normal) > kFacing)
+      seen = std::max(seen, view.image.evidence(place.cast<float>(), static_cast<float>(radius_ / 4.0)));
+  return seen;
+}
+
 double OcclusionTest::empty_part(const std::vector<Vec3>& curve, double enough) const {
   // Neighbours look alike: of many, every other one does, and every fourth at first finds out soonest.
   constexpr std::size_t kStride = 4, kMany = 16;

@@ -33,6 +33,9 @@ class OcclusionTest {
   StretchEvidence around(const Vec3& center, const Vec3& direction) const;
   /// Of the sides of a tube about one point of its centreline, where they are in sight.
   StretchEvidence sides(const Vec3& center, const Vec3& direction) const;
+  /// What the scanners that face a place of a surface saw there, to a quarter of a radius; outside where none does. `normal` is
+  /// unit.
+  RangeImage::Evidence facing(const Vec3& place, const Vec3& normal) const;
   /// The part of a centreline, sampled at its steps, where the scan shows that no tube is. Summed up until it is
   /// `enough`, a part of 1, to rule the whole out.
   double empty_part(const std::vector<Vec3>& curve, double enough) const;
