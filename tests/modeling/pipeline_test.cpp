@@ -154,6 +154,22 @@ TEST(Pipeline, EstimatesTheRadiusThatNobodyStates) {
   EXPECT_EQ(result.tubes.size(), 4u);
 }
 
+/// Its surface is no one piece, and its cylinders are short.
+TEST(Pipeline, EstimatesTheRadiusOfARing) {
+  constexpr double kOwn = 0.008;
+  std::vector<Vec3> nodes;
+  for (int k = 0; k < 36; ++k)
+    nodes.emplace_back(0.0745 * std::cos(radians(10.0 * k)), 0.0745 * std::sin(radians(10.0 * k)), kOwn);
+  scene::PlacedTube ring = tube_along(nodes);
+  ring.tube.radius = kOwn;
+  ring.tube.cylinders.push_back({35, 0, 35});
+  const scene::Scene scene = scene_of({ring});
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), ModelingOptions{});
+  EXPECT_NEAR(result.radius, kOwn, 0.02 * kOwn);
+  EXPECT_GE(micro_recall_of(result, cloud), 0.99);
+}
+
 TEST(Pipeline, FindsThreeRadiiInAKnownBin) {
   const auto thick = [](double radius, double y) {
     scene::PlacedTube placed = tube_along({{-0.2, y, radius}, {0, y + 0.02, radius}, {0.2, y, radius}});

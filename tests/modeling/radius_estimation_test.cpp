@@ -44,6 +44,8 @@ TEST(RadiusEstimation, TheCommonestRadiusIsTheOneThatMostPlacesShow) {
   EXPECT_EQ(commonest_radius(radii, {}).places, 4u);
   EXPECT_DOUBLE_EQ(commonest_radius(radii, {0.0105}).radius, 0.0205);
   EXPECT_EQ(commonest_radius({}, {}).places, 0u);
+  EXPECT_TRUE(is_tried(0.0100, {0.02, 0.0105}));
+  EXPECT_FALSE(is_tried(0.0100, {0.02, 0.0120}));
 }
 
 /// The points of a tube of 13 mm, a bend in it, modeled with 12.5 mm.
@@ -58,7 +60,9 @@ TEST(RadiusEstimation, IsRefinedToThatOfThePointsAboutThePieces) {
   for (std::size_t i = 0; i < cloud.points.size(); ++i)
     cloud.points[i] += static_cast<float>(0.0003 * random.normal()) * cloud.normals[i];
   EXPECT_NEAR(refine_radius({piece}, cloud.points, kRadius), kTrue, 0.0001);
-  piece.nodes = {{0, 0, 0}, {0.02, 0, 0}};  // shorter than it is wide
+  piece.nodes = {{-0.09, 0, 0}, {-0.07, 0, 0}};  // shorter than it is wide
+  EXPECT_NEAR(refine_radius({piece}, cloud.points, kRadius), kTrue, 0.0002);
+  piece.nodes = {{-0.09, 0, 0}, {-0.08, 0, 0}};
   EXPECT_EQ(refine_radius({piece}, cloud.points, kRadius), kRadius);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <optional>
 
 #include "modeling/fitting/centerline_fitting.hpp"
@@ -63,7 +64,8 @@ class ClassFinder {
       const double seen = likeliest_radius(left(), tried, enough);
       if (seen <= 0.0) break;
       TubeClass found = refined_class(left(), seen);
-      tried.push_back(found.radius > 0.0 ? found.radius : seen);
+      // From a radius that has too little behind it one comes back to another's.
+      tried.push_back(found.radius > 0.0 && !is_tried(found.radius, tried) ? found.radius : seen);
       set_aside(standing_);
       if (!is_believed(found, classes.empty())) continue;
       set_aside(found.pieces);
@@ -120,16 +122,21 @@ class ClassFinder {
     std::ranges::sort(segments, [](const Segment& a, const Segment& b) { return a.size() > b.size(); });
     if (segments.size() > kSegments) segments.resize(kSegments);
     const OcclusionTest occlusion = occlusion_.with_radius(radius);
+    const auto is_round = [&](const TubePiece& piece) {
+      const PieceEvidence evidence = examine_piece(piece, sample.points, occlusion);
+      return std::abs(evidence.curvature - 1.0) <= 0.4 && evidence.empty <= 0.3;
+    };
     std::vector<TubePiece> pieces;
     for (const Segment& segment : segments) {
       auto piece = fit_centerline(sample, {segment, VoteGraph(sample, segment, radius)}, {}, radius,
                                   viewpoint_of(sample, segment, projection_));
-      if (!piece) continue;
-      const PieceEvidence evidence = examine_piece(*piece, sample.points, occlusion);
-      if (std::abs(evidence.curvature - 1.0) > 0.4 || evidence.empty > 0.3) continue;
-      pieces.push_back(std::move(*piece));
+      if (piece && is_round(*piece)) pieces.push_back(std::move(*piece));
       if (pieces.size() == kPieces) break;
     }
+    // A ring's surface is no one piece.
+    if (pieces.empty())
+      std::ranges::copy_if(find_centerline_pieces(sample, segments, projection_, radius), std::back_inserter(pieces),
+                           is_round);
     return pieces.empty() ? 0.0 : refine_radius(pieces, sample.points, radius);
   }
 

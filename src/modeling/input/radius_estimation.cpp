@@ -107,10 +107,12 @@ CurvedPlaces find_curved_places(const std::vector<cloud::Point>& points, const s
   return places;
 }
 
+bool is_tried(double radius, const std::vector<double>& tried) {
+  return std::ranges::any_of(tried, [&](double other) { return std::abs(std::log(radius / other)) < 0.15; });
+}
+
 CommonRadius commonest_radius(std::vector<double> radii, const std::vector<double>& tried) {
-  std::erase_if(radii, [&](double radius) {
-    return std::ranges::any_of(tried, [&](double other) { return std::abs(std::log(radius / other)) < 0.15; });
-  });
+  std::erase_if(radii, [&](double radius) { return is_tried(radius, tried); });
   std::ranges::sort(radii);
   CommonRadius common;
   for (std::size_t first = 0, last = 0; first < radii.size(); ++first) {
@@ -121,13 +123,15 @@ CommonRadius commonest_radius(std::vector<double> radii, const std::vector<doubl
   return common;
 }
 
-double refine_radius(const std::vector<TubePiece>& pieces, const std::vector<cloud::Point>& points, double radius) {
+/// Of the cylinders that are at least `least_length` long, metres.
+std::vector<MeasuredRadius> measure_radii(const std::vector<TubePiece>& pieces, const std::vector<cloud::Point>& points,
+                                          double radius, double least_length) {
   std::vector<MeasuredRadius> radii;
   for (const TubePiece& piece : pieces)
     for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
       const Vec3 start = piece.nodes[k], along = piece.nodes[k + 1] - start;
       const double length = along.norm();
-      if (length < 2.0 * radius) continue;
+      if (length < least_length) continue;
       const Vec3 axis = along / length, u = axis.unitOrthogonal(), v = axis.cross(u);
       std::vector<Eigen::Vector2d> across;
       for (const std::uint32_t i : piece.points) {
@@ -138,6 +142,13 @@ double refine_radius(const std::vector<TubePiece>& pieces, const std::vector<clo
       }
       if (across.size() >= 30) radii.push_back(fit_circle(across, radius));
     }
+  return radii;
+}
+
+double refine_radius(const std::vector<TubePiece>& pieces, const std::vector<cloud::Point>& points, double radius) {
+  std::vector<MeasuredRadius> radii = measure_radii(pieces, points, radius, 2.0 * radius);
+  // Of rings and narrow bends, which have none so long.
+  if (radii.empty()) radii = measure_radii(pieces, points, radius, radius);
   return radii.empty() ? radius : weighted_median(std::move(radii));
 }
 

@@ -22,6 +22,9 @@ struct CommonRadius {
   double radius = 0.0;
   std::size_t places = 0;
 };
+/// Whether it is nearer than a seventh to one of the `tried` radii, which then count as the same.
+bool is_tried(double radius, const std::vector<double>& tried);
+
 /// The one that most places show, within a quarter, none of the `tried` ones.
 CommonRadius commonest_radius(std::vector<double> radii, const std::vector<double>& tried);
 
