@@ -63,9 +63,8 @@ class ClassFinder {
       if (rest_ && rest_->points.size() < enough) break;
       const double seen = likeliest_radius(left(), tried, enough);
       if (seen <= 0.0) break;
-      TubeClass found = refined_class(left(), seen);
-      // From a radius that has too little behind it one comes back to another's.
-      tried.push_back(found.radius > 0.0 && !is_tried(found.radius, tried) ? found.radius : seen);
+      TubeClass found = refined_class(left(), seen, tried);
+      tried.push_back(found.radius > 0.0 ? found.radius : seen);
       set_aside(standing_);
       if (!is_believed(found, classes.empty())) continue;
       set_aside(found.pieces);
@@ -91,14 +90,16 @@ class ClassFinder {
     return common.radius;
   }
 
-  /// From the radius that places show to the one that the longest pieces show, and to all of its pieces.
-  TubeClass refined_class(FilteredCloud& cloud, double radius) {
+  /// From the radius that places show to the one that the longest pieces show, and to all of its pieces. What tubes of a
+  /// `tried` radius left over leads back to that one, and is not followed.
+  TubeClass refined_class(FilteredCloud& cloud, double radius, const std::vector<double>& tried) {
     for (int round = 0; round < 2; ++round) {
       // Where points are sparse, normals from as many as a known radius would not let in are too flat.
       if (reach(cloud, radius) < 0.9 * reach(cloud, round == 0 ? 0.0 : 2.0 * radius))
         cloud.normals = estimate_normals(projection_, cloud.points, reach(cloud, radius), 1, cloud.viewpoints);
       const double refined = refined_radius(cloud, radius);
       if (refined <= 0.0) return {};
+      if (is_tried(refined, tried)) break;
       const bool is_settled = std::abs(refined - radius) < 0.05 * radius;
       radius = refined;
       if (is_settled) break;
