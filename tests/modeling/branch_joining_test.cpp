@@ -40,7 +40,8 @@ TEST_F(BranchJoining, AmongTubesOfOneLengthOnlyWhatIsNotAsLongIsABranch) {
   };
   EXPECT_EQ(tubes_of_length(0.0, 0.5 * kRadius).size(), 1u);
   EXPECT_EQ(tubes_of_length(0.5, 0.5 * kRadius).size(), 1u);
-  EXPECT_EQ(tubes_of_length(0.3, 0.5 * kRadius).size(), 2u);  // the trunk is whole
+  EXPECT_EQ(tubes_of_length(0.3, 0.5 * kRadius).size(), 2u);   // the trunk is whole
+  EXPECT_EQ(tubes_of_length(0.35, 0.5 * kRadius).size(), 2u);  // together they are longer
   EXPECT_EQ(tubes_of_length(0.5, 2.1 * kRadius).size(), 2u);
   EXPECT_TRUE(join_likely_branches({}, kRadius, occlusion(), 0.0).empty());
 }

@@ -327,7 +327,7 @@ std::vector<TubeModel> join_likely_branches(const std::vector<TubePath>& paths, 
   const auto is_no_branch = [&](const BranchLink& link) {
     const TubePiece &branch = pieces[link.end / 2], &trunk = pieces[link.other];
     return link.other_end || link.cost >= 0.0 || !is_long(branch) || is_whole(branch) || is_whole(trunk) ||
-           (link.cost > kOnSideCost && branch.length() + trunk.length() > whole + 2.0 * radius);
+           ((tube_length > 0.0 || link.cost > kOnSideCost) && branch.length() + trunk.length() > whole + 2.0 * radius);
   };
   std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion, 40.0 * radius);
   std::vector<BranchLink> links = find_branch_links(pieces, ends, occlusion, 0.0);
