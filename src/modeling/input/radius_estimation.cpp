@@ -64,6 +64,28 @@ MeasuredRadius fit_circle(const std::vector<Eigen::Vector2d>& points, double rad
   return {circle.z(), 1.0 / std::max(variance, 1e-18)};
 }
 
+/// Of the cylinders that are at least `least_length` long, metres.
+std::vector<MeasuredRadius> measure_radii(const std::vector<TubePiece>& pieces, const std::vector<cloud::Point>& points,
+                                          double radius, double least_length) {
+  std::vector<MeasuredRadius> radii;
+  for (const TubePiece& piece : pieces)
+    for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
+      const Vec3 start = piece.nodes[k], along = piece.nodes[k + 1] - start;
+      const double length = along.norm();
+      if (length < least_length) continue;
+      const Vec3 axis = along / length, u = axis.unitOrthogonal(), v = axis.cross(u);
+      std::vector<Eigen::Vector2d> across;
+      for (const std::uint32_t i : piece.points) {
+        const Vec3 offset = points[i].cast<double>() - start;
+        const double t = offset.dot(axis);
+        const Eigen::Vector2d p(offset.dot(u), offset.dot(v));
+        if (t >= 0.0 && t <= length && std::abs(p.norm() - radius) < radius / 4.0) across.push_back(p);
+      }
+      if (across.size() >= 30) radii.push_back(fit_circle(across, radius));
+    }
+  return radii;
+}
+
 /// The radius that as much weight lies below as above.
 double weighted_median(std::vector<MeasuredRadius> radii) {
   std::sort(radii.begin(), radii.end(), [](const auto& a, const auto& b) { return a.radius < b.radius; });
@@ -121,28 +143,6 @@ CommonRadius commonest_radius(std::vector<double> radii, const std::vector<doubl
     common = {.radius = radii[first + (last - first) / 2], .places = last - first};
   }
   return common;
-}
-
-/// Of the cylinders that are at least `least_length` long, metres.
-std::vector<MeasuredRadius> measure_radii(const std::vector<TubePiece>& pieces, const std::vector<cloud::Point>& points,
-                                          double radius, double least_length) {
-  std::vector<MeasuredRadius> radii;
-  for (const TubePiece& piece : pieces)
-    for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
-      const Vec3 start = piece.nodes[k], along = piece.nodes[k + 1] - start;
-      const double length = along.norm();
-      if (length < least_length) continue;
-      const Vec3 axis = along / length, u = axis.unitOrthogonal(), v = axis.cross(u);
-      std::vector<Eigen::Vector2d> across;
-      for (const std::uint32_t i : piece.points) {
-        const Vec3 offset = points[i].cast<double>() - start;
-        const double t = offset.dot(axis);
-        const Eigen::Vector2d p(offset.dot(u), offset.dot(v));
-        if (t >= 0.0 && t <= length && std::abs(p.norm() - radius) < radius / 4.0) across.push_back(p);
-      }
-      if (across.size() >= 30) radii.push_back(fit_circle(across, radius));
-    }
-  return radii;
 }
 
 double refine_radius(const std::vector<TubePiece>& pieces, const std::vector<cloud::Point>& points, double radius) {

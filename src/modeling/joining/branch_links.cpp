@@ -47,19 +47,20 @@ SideEvidence examine_side(const Vec3& tip, const Vec3& place, const TubePiece& o
   const Vec3 along = (place - tip) / length;
   const Vec3 right = along.unitOrthogonal(), up = along.cross(right);
   int facing = 0, in_view = 0, seen_through = 0;
-  for (double ahead = 0.5 * kStep * radius; ahead < length; ahead += kStep * radius)
-    for (int k = 0; k < kAround; ++k) {
-      const Vec3 normal = std::cos(k * kStep) * right + std::sin(k * kStep) * up;
+  for (int k = 0; k < kAround; ++k) {
+    const Vec3 normal = std::cos(k * kStep) * right + std::sin(k * kStep) * up;
+    for (double ahead = 0.5 * kStep * radius; ahead < length; ahead += kStep * radius) {
       const Vec3 at = tip + ahead * along + radius * normal;
-      const double off = distance_to_polyline(at, other.nodes);
-      if (off < radius) continue;
       const Evidence seen = occlusion.facing(at, normal);
       if (seen == Evidence::outside) continue;
+      const double off = distance_to_polyline(at, other.nodes);
+      if (off < radius) continue;
       const bool is_empty = seen == Evidence::empty || seen == Evidence::no_data || seen == Evidence::beyond;
       ++facing;
       in_view += is_empty || seen == Evidence::surface;
       seen_through += is_empty && off > 1.25 * radius;
     }
+  }
   return {.in_view = facing > 0 ? double(in_view) / facing : 0.0, .seen_through = seen_through * kStep * kStep};
 }
 
