@@ -30,6 +30,7 @@ class Pull {
         world_(pile.tubes, bin, options, pile.forces ? *pile.forces : PileForces{}, pile.masses) {
     for (std::size_t i = 0; i < world_.size(); ++i) start_heights_.push_back(world_.center_of_mass(i).z());
     highest_ = start_heights_;
+    world_.let_sleep_beyond(tube);
   }
 
   void pull_out() {

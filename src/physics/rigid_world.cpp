@@ -3,6 +3,7 @@
 #include <ode/ode.h>
 
 #include <algorithm>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -47,6 +48,7 @@ struct RigidWorld::Impl {
   std::optional<std::size_t> pulled;     ///< the tube that is held, whatever pushes
   std::vector<scene::PlacedTube> tubes;  ///< poses are the bodies'
   std::vector<dBodyID> bodies;
+  std::vector<bool> asleep;  ///< tubes that stand still, with the contacts that they have, until something touches them
   std::vector<tube::MassProperties> masses;
   std::vector<double> inverse_masses;             ///< 1/kg
   std::vector<Eigen::Matrix3d> inverse_inertias;  ///< about the centre of mass, tube frame
@@ -61,6 +63,7 @@ struct RigidWorld::Impl {
     dBodySetMass(body, &mass);
     set_pose(body, tube.world_from_tube, properties.center);
     bodies.push_back(body);
+    asleep.push_back(false);
     inverse_masses.push_back(1.0 / properties.mass);
     inverse_inertias.push_back(properties.inertia.inverse());
     shapes.emplace_back(tube);
@@ -69,7 +72,8 @@ struct RigidWorld::Impl {
   void remove(std::size_t i) {
     dBodyDestroy(bodies[i]);
     const auto erase = [i](auto& of_each) { of_each.erase(of_each.begin() + static_cast<std::ptrdiff_t>(i)); };
-    erase(tubes), erase(bodies), erase(masses), erase(inverse_masses), erase(inverse_inertias), erase(shapes);
+    erase(tubes), erase(bodies), erase(asleep), erase(masses), erase(inverse_masses), erase(inverse_inertias),
+        erase(shapes);
     near_cylinders = {};
     std::erase_if(contacts, [i](const StepContact& c) { return c.first == i || c.second == i; });
     for (StepContact& contact : contacts) {
@@ -111,12 +115,13 @@ struct RigidWorld::Impl {
     for (std::size_t i = 0; i < shapes.size(); ++i) margins.push_back(margin_of(i, time_step));
     near_cylinders.follow(shapes, margins);
     for (std::size_t j = 0; j < shapes.size(); ++j) {
-      if (pulled != j) {
+      if (pulled != j && !asleep[j]) {
         collide(boxes, shapes[j], -margins[j], touches);
         collide(mesh, shapes[j], -margins[j], touches);
       }
       append(kBinBody, j);
       for (const NearTube& near : near_cylinders.near(j)) {
+        if (asleep[j] && asleep[near.first]) continue;
         collide(shapes[near.first], shapes[j], near.cylinders, -std::max(margins[near.first], margins[j]), touches);
         append(near.first, j);
       }
@@ -153,18 +158,49 @@ struct RigidWorld::Impl {
     if (contact.first != kBinBody) add(contact.first, -contact.force, -contact.resistance);
   }
 
+  /// All tubes in a chain of `touching` contacts with the tube wake.
+  void wake(std::size_t tube, const std::vector<StepContact>& touching) {
+    asleep[tube] = false;
+    dBodyEnable(bodies[tube]);
+    for (const StepContact& contact : touching) {
+      if (contact.first == kBinBody || (contact.first != tube && contact.second != tube)) continue;
+      const std::size_t other = contact.first == tube ? contact.second : contact.first;
+      if (asleep[other]) wake(other, touching);
+    }
+  }
+
+  /// Those that something awake touches now, and what they have touched `before`. Whether there were any.
+  bool wake_touched(const std::vector<StepContact>& before) {
+    bool woke = false;
+    for (const StepContact& contact : contacts)
+      for (const std::size_t tube : {contact.first, contact.second})
+        if (tube != kBinBody && asleep[tube]) wake(tube, before), woke = true;
+    return woke;
+  }
+
+  /// Contacts of tubes that sleep stay as they are.
+  void keep_sleeping_contacts(const std::vector<StepContact>& before) {
+    std::ranges::copy_if(before, std::back_inserter(contacts),
+                         [this](const StepContact& c) { return asleep[c.second]; });
+    std::ranges::stable_sort(contacts, {}, contact_bodies);
+  }
+
   /// Finds the contacts and what they bear, and lets ODE move the bodies under those forces.
   void solve(double time_step) {
     const std::size_t room = 2 * contacts.size();
     const std::vector<StepContact> before = std::exchange(contacts, {});
-    contacts.reserve(room);
-    find_contacts(time_step);
+    do {
+      contacts.clear();
+      contacts.reserve(room);
+      find_contacts(time_step);
+    } while (wake_touched(before));
     warm_start(before, options.warm_start, shapes, contacts);
     std::vector<SolverBody> unhindered_bodies;
     for (std::size_t i = 0; i < bodies.size(); ++i) unhindered_bodies.push_back(unhindered(i, time_step));
     solve_contacts(options, time_step, std::move(unhindered_bodies), contacts);
     for (const StepContact& contact : contacts) apply(contact);
     dWorldQuickStep(world, time_step);
+    if (std::ranges::count(asleep, true) > 0) keep_sleeping_contacts(before);
   }
 
   void limit_speed(dBodyID body) const {
@@ -209,6 +245,7 @@ RigidWorld::~RigidWorld() {
 void RigidWorld::step(double time_step) {
   impl_->solve(time_step);
   for (std::size_t i = 0; i < impl_->bodies.size(); ++i) {
+    if (impl_->asleep[i]) continue;
     impl_->limit_speed(impl_->bodies[i]);
     impl_->read_pose(i);
     impl_->shapes[i].follow(impl_->tubes[i]);
@@ -227,6 +264,13 @@ void RigidWorld::remove_guards() {
   impl_->guards_stand = false;
 }
 bool RigidWorld::has_guards() const { return impl_->guards_stand; }
+
+void RigidWorld::let_sleep_beyond(std::size_t tube) {
+  if (impl_->contacts.empty()) return;  // nobody knows yet what touches what
+  impl_->asleep.assign(impl_->bodies.size(), true);
+  for (const dBodyID body : impl_->bodies) dBodyDisable(body);
+  impl_->wake(tube, impl_->contacts);
+}
 
 void RigidWorld::pull(std::size_t tube, double speed) {
   impl_->pulled = tube;

@@ -30,6 +30,9 @@ class RigidWorld {
   void raise_guards(double height);
   void remove_guards();
   bool has_guards() const;
+  /// Of tubes at rest, those in no chain of contacts with this one stand still from now on, proven to be at rest as they
+  /// are, until something touches them or what they touch.
+  void let_sleep_beyond(std::size_t tube);
   /// Holds a tube from now on, without turning, and moves it straight up (m/s). It passes through the bin.
   void pull(std::size_t tube, double speed);
   /// Takes the pulled tube away; the indices of those after it are one less. The others keep their forces.

@@ -1,12 +1,7 @@
 #include "physics/warm_start.hpp"
 
-#include <utility>
-
 namespace tubebin::physics {
 namespace {
-
-/// In the order of contacts; the bin comes before all tubes.
-std::pair<std::size_t, std::size_t> bodies(const StepContact& contact) { return {contact.second, contact.first + 1}; }
 
 bool is_same_spot(const Touch& a, const Touch& b, double reach) {
   constexpr double kSameDirection = 0.9;  // cosine
@@ -15,14 +10,18 @@ bool is_same_spot(const Touch& a, const Touch& b, double reach) {
 
 }  // namespace
 
+std::pair<std::size_t, std::size_t> contact_bodies(const StepContact& contact) {
+  return {contact.second, contact.first + 1};
+}
+
 void warm_start(const std::vector<StepContact>& before, double share, const std::vector<CollisionTube>& tubes,
                 std::vector<StepContact>& contacts) {
   std::vector<bool> taken(before.size(), false);
   std::size_t begin = 0;  // of those that are not of bodies before this contact's
   for (StepContact& contact : contacts) {
     const double reach = 0.5 * tubes[contact.second].radius;
-    while (begin < before.size() && bodies(before[begin]) < bodies(contact)) ++begin;
-    for (std::size_t i = begin; i < before.size() && bodies(before[i]) == bodies(contact); ++i) {
+    while (begin < before.size() && contact_bodies(before[begin]) < contact_bodies(contact)) ++begin;
+    for (std::size_t i = begin; i < before.size() && contact_bodies(before[i]) == contact_bodies(contact); ++i) {
       if (taken[i] || !is_same_spot(before[i].touch, contact.touch, reach)) continue;
       taken[i] = true;
       contact.force = share * before[i].force;

@@ -96,6 +96,40 @@ TEST(Lift, AWorldGoesOnUnderTheForcesThatHeldThePile) {
   EXPECT_GT(fastest(loose), 10.0 * fastest(held));
 }
 
+/// Where each contact is and what it bears, of the tubes from `first_tube` on.
+std::vector<std::pair<Vec3, Vec3>> contacts_from(const RigidWorld& world, std::size_t first_tube) {
+  std::vector<std::pair<Vec3, Vec3>> found;
+  for (const StepContact& contact : world.forces().contacts)
+    if (contact.second >= first_tube) found.emplace_back(contact.touch.position, contact.force);
+  return found;
+}
+
+TEST(Lift, WhatNothingTouchesSleepsWithItsForcesUntilItIsStruck) {
+  const PhysicsOptions options;
+  const std::vector<scene::PlacedTube> pile = {
+      tube_between({-0.15, -0.1, kTubeRadius}, {0.15, -0.1, kTubeRadius}),
+      tube_between({-0.15, 0.1, kTubeRadius}, {0.15, 0.1, kTubeRadius}),
+      tube_between({0.0, 0.02, 3.0 * kTubeRadius}, {0.0, 0.17, 3.0 * kTubeRadius})};
+  RigidWorld world(pile, scene::Bin{}, options);
+  for (int i = 0; i < 5; ++i) world.step(options.time_step);
+  const auto bearing = contacts_from(world, 1);
+  ASSERT_GE(bearing.size(), 3u);
+  const auto pose = [&](std::size_t tube) { return Eigen::Matrix4d(world.pose(tube).matrix()); };
+  const Eigen::Matrix4d lower = pose(1), upper = pose(2);
+
+  world.let_sleep_beyond(0);
+  for (int i = 0; i < 5; ++i) world.step(options.time_step);
+  EXPECT_EQ(pose(1), lower);
+  EXPECT_EQ(pose(2), upper);
+  EXPECT_EQ(contacts_from(world, 1), bearing);
+
+  world.put(0, tube_between({-0.15, 0.06, 0.06}, {0.15, 0.06, 0.06}).world_from_tube);
+  for (int i = 0; i < 40; ++i) world.step(options.time_step);
+  EXPECT_NE(pose(2), upper) << "struck";
+  EXPECT_NE(pose(1), lower) << "below what was struck";
+  EXPECT_GT(world.pose(0).translation().z(), 0.03) << "it lies on what woke";
+}
+
 TEST(Lift, APileIsEmptiedOneByOneAndEachRestIsAPile) {
   Random random(31);
   const PhysicsOptions options;
