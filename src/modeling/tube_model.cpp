@@ -27,7 +27,7 @@ double longest_step(const std::vector<Vec3>& nodes) {
   return std::sqrt(squared);
 }
 
-Vec3 nearest_on_polyline(const Vec3& point, const std::vector<Vec3>& nodes) {
+Vec3 nearest_on_polyline(const Vec3& point, std::span<const Vec3> nodes) {
   Vec3 nearest = nodes.front();
   for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
     const Vec3 axis = nodes[k + 1] - nodes[k];
@@ -38,7 +38,7 @@ Vec3 nearest_on_polyline(const Vec3& point, const std::vector<Vec3>& nodes) {
   return nearest;
 }
 
-double distance_to_polyline(const Vec3& point, const std::vector<Vec3>& nodes) {
+double distance_to_polyline(const Vec3& point, std::span<const Vec3> nodes) {
   return (point - nearest_on_polyline(point, nodes)).norm();
 }
 

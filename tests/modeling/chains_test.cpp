@@ -145,7 +145,8 @@ TEST(LengthModel, CountsWhatIsMissingBeyondTheRoomForIt) {
   EXPECT_EQ(lengths.cost(0.5, 0.0, 0.0, false), 0.0);
   EXPECT_EQ(lengths.cost(0.4, 0.0, 0.1, false), 0.0);
   EXPECT_NEAR(lengths.cost(0.39, 0.0, 0.105, false), 2.0, 1e-9);  // two standard deviations of a quarter of a radius
-  EXPECT_EQ(lengths.cost(0.2, 0.0, 0.1, false), 10.0);
+  EXPECT_EQ(lengths.cost(0.2, 0.0, 0.0, false), 10.0);
+  EXPECT_EQ(lengths.cost(0.2, 0.0, 0.1, false), 6.0);  // a hidden end may lead elsewhere
   EXPECT_EQ(lengths.cost(0.2, 0.0, 0.1, true), 3.0);
   EXPECT_EQ(lengths.cost(0.7, 0.0, 0.3, true), 10.0);  // room explains nothing that is too much
   EXPECT_EQ(LengthModel{.radius = kThickness}.cost(0.2, 0.0, 0.0, false), 0.0);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "tubebin/cloud/cloud.hpp"
@@ -58,9 +59,9 @@ double polyline_length(const std::vector<Vec3>& nodes);
 double longest_step(const std::vector<Vec3>& nodes);
 
 /// The place of a polyline that is nearest to a point.
-Vec3 nearest_on_polyline(const Vec3& point, const std::vector<Vec3>& nodes);
+Vec3 nearest_on_polyline(const Vec3& point, std::span<const Vec3> nodes);
 
 /// Distance of a point to the nearest place of a polyline, metres.
-double distance_to_polyline(const Vec3& point, const std::vector<Vec3>& nodes);
+double distance_to_polyline(const Vec3& point, std::span<const Vec3> nodes);
 
 }  // namespace tubebin::modeling

@@ -12,6 +12,8 @@ namespace {
 /// length that is not common to all), one that is longer other reasons than a wrong join (an end that is drawn out
 /// beyond a flat end): e^-10.
 constexpr double kLengthCostLimit = 10.0;
+/// Where an end is out of sight, it may go on another way than it seems to: e^-6.
+constexpr double kHiddenLengthCostLimit = 6.0;
 /// What may be no tube and what no tube explains is as likely chance as not: e^-3.
 constexpr double kChanceCostLimit = 3.0;
 constexpr std::size_t kPossibleLengths = 4;
@@ -32,8 +34,10 @@ double LengthModel::cost(double length, double bridged, double room, bool may_be
   if (common <= 0.0) return 0.0;
   const double missing = common - length;
   const double unexplained = missing < 0.0 ? missing : std::max(missing - room, 0.0);
-  return std::min(0.5 * unexplained * unexplained / (sigma(bridged) * sigma(bridged)),
-                  may_be_chance && missing >= 0.0 ? kChanceCostLimit : kLengthCostLimit);
+  double limit = kLengthCostLimit;
+  if (missing >= 0.0 && room > 0.0) limit = kHiddenLengthCostLimit;
+  if (missing >= 0.0 && may_be_chance) limit = kChanceCostLimit;
+  return std::min(0.5 * unexplained * unexplained / (sigma(bridged) * sigma(bridged)), limit);
 }
 
 double LengthModel::gain(double length, double bridged, double room) const {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "modeling/joining/sampled_curve.hpp"
 #include "tubebin/modeling/tube_model.hpp"
@@ -14,6 +16,9 @@ namespace {
 
 /// As in join_candidates.cpp: log of how seldom a place that a tube takes up is measured as empty.
 constexpr double kEmptyPlaceCost = 4.6;
+
+/// Of a section on a copy: half a second's worth. Scans of six to eleven rods take 0.2 to 1.2 million.
+constexpr std::size_t kMostTests = 5'000'000;
 
 class CopyFinder {
  public:
@@ -27,10 +32,15 @@ class CopyFinder {
     }
   }
 
+  /// By the longest sections first, until it takes too long.
   std::vector<ShapeCopy> find() {
-    for (const Section& section : sections_) {
-      if (section.length < 3.0 * radius_) continue;
-      std::vector<Vec3> samples = section.samples;
+    std::vector<const Section*> seeds;
+    for (const Section& section : sections_)
+      if (section.length >= 3.0 * radius_) seeds.push_back(&section);
+    std::ranges::stable_sort(seeds, std::greater<>(), &Section::length);
+    for (const Section* seed : seeds) {
+      if (tests_ > kMostTests) break;
+      std::vector<Vec3> samples = seed->samples;
       place_along(samples);
       std::ranges::reverse(samples);
       place_along(samples);
@@ -81,18 +91,22 @@ class CopyFinder {
     }
   }
 
-  /// Fits the copy to the sections that it explains.
+  /// Fits the copy to the sections that it explains. Most copies are hopeless after the first round.
   void consider(Pose pose) {
     constexpr int kRounds = 4, kMostTries = 8;
+    constexpr double kHopelessCost = 2.0 * kCopyCostLimit;
     std::vector<PlacedSection> placed = explained_by(pose, 1.5 * radius_);
     if (!fix_pose(placed) || ++tries_[places_of(placed)] > kMostTries) return;
-    for (int round = 0; round < kRounds && fix_pose(placed); ++round) {
-      pose = fitted(pose, placed);
-      placed = explained_by(pose, radius_);
-    }
-    if (!fix_pose(placed)) return;
     ShapeCopy copy{.shape = &shape_, .pose = pose, .placed = std::move(placed), .cost = 0.0};
-    copy.cost = misfit_cost(copy) + hidden_cost(copy);
+    for (int round = 0; round < kRounds; ++round) {
+      copy.pose = fitted(copy.pose, copy.placed);
+      copy.placed = explained_by(copy.pose, radius_);
+      if (!fix_pose(copy.placed)) return;
+      if (round == 0 && hidden_cost(copy, {}) > kHopelessCost) return;
+    }
+    const double misfit = misfit_cost(copy);
+    if (misfit + hidden_cost(copy, {}) > kCopyCostLimit) return;
+    copy.cost = misfit + hidden_cost(copy, sections_beside(copy));
     if (copy.cost > kCopyCostLimit) return;
     const auto [known, is_new] = copies_.try_emplace(places_of(copy.placed), copy);
     if (!is_new && copy.cost < known->second.cost) known->second = std::move(copy);
@@ -116,14 +130,15 @@ class CopyFinder {
     std::vector<Vec3> from, to;
     for (const PlacedSection& each : placed)
       for (const Vec3& sample : sections_[each.section].samples) {
-        from.push_back(nearest_on_polyline(inverse * sample, shape_));
+        from.push_back(nearest_point(inverse * sample));
         to.push_back(sample);
       }
     return best_motion(from, to);
   }
 
   /// The sections that lie on the copy from one end to the other, no two at one place of it.
-  std::vector<PlacedSection> explained_by(const Pose& pose, double reach) const {
+  std::vector<PlacedSection> explained_by(const Pose& pose, double reach) {
+    tests_ += sections_.size();
     const Pose inverse = pose.inverse();
     std::vector<PlacedSection> placed;
     for (std::uint32_t k = 0; k < sections_.size(); ++k)
@@ -146,15 +161,16 @@ class CopyFinder {
   std::optional<PlacedSection> place(std::uint32_t k, const Pose& inverse, double reach) const {
     const std::vector<Vec3>& samples = sections_[k].samples;
     const Vec3 center = inverse * samples[samples.size() / 2];
-    if (box_.squaredExteriorDistance(center) > 4.0 * reach * reach) return std::nullopt;
+    if (!may_be_near(center, reach)) return std::nullopt;
     const auto [middle, off_middle] = nearest(center);
     if (off_middle > reach) return std::nullopt;
-    const auto [first, off_first] = nearest(inverse * samples.front());
-    const auto [last, off_last] = nearest(inverse * samples.back());
-    if (std::max(off_first, off_last) > 2.0 * reach) return std::nullopt;
     const Vec3 along = inverse.linear() * (samples.back() - samples.front()).normalized();
     const bool is_fragment = sections_[k].length < 2.0 * radius_;
     if (!is_fragment && std::abs(along.dot(tangents_[middle])) < 0.85) return std::nullopt;
+    const auto [first, off_first] = nearest(inverse * samples.front());
+    if (off_first > 2.0 * reach) return std::nullopt;
+    const auto [last, off_last] = nearest(inverse * samples.back());
+    if (off_last > 2.0 * reach) return std::nullopt;
     double squares = 0.0;
     for (const Vec3& sample : samples) squares += std::pow(nearest(inverse * sample).second, 2);
     const double distance = std::sqrt(squares / static_cast<double>(samples.size()));
@@ -166,13 +182,35 @@ class CopyFinder {
                          .distance = distance};
   }
 
-  /// The shape's sample nearest to a place, and the distance across the shape there; beyond its ends, by as much as fits end
-  /// too late, that counts as none.
-  std::pair<std::size_t, double> nearest(const Vec3& place) const {
+  /// Whether some sample may be within `reach` across the shape: by every fourth sample, no farther than a radius from those
+  /// between.
+  bool may_be_near(const Vec3& place, double reach) const {
+    const double farthest = reach + 2.0 * radius_;
+    if (box_.squaredExteriorDistance(place) > farthest * farthest) return false;
+    for (std::size_t k = 0; k < shape_.size(); k += 4)
+      if ((shape_[k] - place).squaredNorm() <= farthest * farthest) return true;
+    return (shape_.back() - place).squaredNorm() <= farthest * farthest;
+  }
+
+  /// The shape's sample nearest to a place, and the square of its distance.
+  std::pair<std::size_t, double> nearest_sample(const Vec3& place) const {
     std::size_t best = 0;
     double squared = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < shape_.size(); ++k)
       if (const double d = (shape_[k] - place).squaredNorm(); d < squared) squared = d, best = k;
+    return {best, squared};
+  }
+
+  Vec3 nearest_point(const Vec3& place) const {
+    const std::size_t k = nearest_sample(place).first;
+    const std::size_t before = k == 0 ? 0 : k - 1, after = std::min(k + 1, shape_.size() - 1);
+    return nearest_on_polyline(place, std::span(shape_).subspan(before, after - before + 1));
+  }
+
+  /// The shape's sample nearest to a place, and the distance across the shape there; beyond its ends, by as much as fits end
+  /// too late, that counts as none.
+  std::pair<std::size_t, double> nearest(const Vec3& place) const {
+    const auto [best, squared] = nearest_sample(place);
     const double along = std::abs((place - shape_[best]).dot(tangents_[best]));
     const double slack = best == 0 || best + 1 == shape_.size() ? radius_ : radius_ / 4.0;
     return {best, std::sqrt(std::max(squared - std::pow(std::min(along, slack), 2), 0.0))};
@@ -185,15 +223,14 @@ class CopyFinder {
     return cost;
   }
 
-  /// What the scan and the other sections say against the parts of the copy that no section shows. Neighbouring samples say
+  /// What the scan and other sections beside it say against the parts of the copy that no section shows. Neighbouring samples say
   /// much the same: a diameter's worth, four of them, counts once.
-  double hidden_cost(const ShapeCopy& copy) const {
+  double hidden_cost(const ShapeCopy& copy, const std::vector<const Section*>& others) const {
     std::vector<bool> is_shown(shape_.size(), false);
     for (const PlacedSection& each : copy.placed)
       for (std::size_t k = each.first; k <= each.last; ++k) is_shown[k] = true;
-    const std::vector<const Section*> others = sections_beside(copy);
     double cost = 0.0;
-    for (std::size_t k = 0; k < shape_.size() && cost <= kCopyCostLimit; ++k) {
+    for (std::size_t k = 0; k < shape_.size() && cost <= 2.0 * kCopyCostLimit; ++k) {
       if (is_shown[k]) continue;
       const Vec3 place = copy.pose * shape_[k], along = copy.pose.linear() * tangents_[k];
       cost += kEmptyPlaceCost / 4.0 * (is_taken(place, others) ? 1.0 : occlusion_.around(place, along).empty);
@@ -232,6 +269,7 @@ class CopyFinder {
   Eigen::AlignedBox3d box_;     ///< of the shape
   double radius_;
   const OcclusionTest& occlusion_;
+  std::size_t tests_ = 0;
   std::map<Places, int> tries_;  ///< from poses that seemed to explain these sections
   std::map<Places, ShapeCopy> copies_;
 };
