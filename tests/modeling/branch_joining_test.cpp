@@ -57,6 +57,21 @@ TEST_F(BranchJoining, OnlyASureBranchMakesATubeLongerThanALengthThatRecurs) {
   EXPECT_EQ(tubes_beside(tree(0.0, 0.5 * kRadius), 3), 1u);
 }
 
+TEST_F(BranchJoining, ABranchThatWasFollowedBeyondItsTrunkIsCutBackToIt) {
+  const auto tubes = join_likely_branches(tree(0.3, -1.5 * kRadius), kRadius, occlusion(), 0.0);
+  ASSERT_EQ(tubes.size(), 1u);
+  ASSERT_EQ(tubes[0].paths.size(), 2u);
+  EXPECT_NEAR(tubes[0].length(), 0.4, kRadius);
+  for (const Vec3& node : tubes[0].paths[1].nodes) EXPECT_GT(node.y(), 0.3 - 0.6 * kRadius);
+}
+
+TEST_F(BranchJoining, ArmsThatAreAlikeByChanceShowNoLengthThatRecurs) {
+  std::vector<TubePath> paths = tree(0.0, 2.0 * kRadius);  // starts under the lid
+  const double arm = polyline_length(paths[1].nodes);
+  for (const double y : {-0.3, -0.4}) paths.push_back(path({{0, y, 0}, {arm, y, 0}}));
+  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0).size(), 3u);
+}
+
 /// What tells a branch from a flat end that touches a side is in sight or is not.
 TEST_F(BranchJoining, AFlatEndThatTouchesASideIsABranchOnlyWhereTheWedgeBetweenThemIsHidden) {
   const auto tubes_at = [&](double y) {

@@ -7,6 +7,7 @@
 #include "support/program.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/results/model_cloud.hpp"
+#include "tubebin/results/results_folder.hpp"
 
 namespace tubebin::testing {
 
@@ -38,6 +39,19 @@ class ModelTubes : public ::testing::Test {
 
   TemporaryFolder folder_;
 };
+
+/// Bits of a tube that look like one of another radius took up to two fifths of the thin ones' points.
+TEST_F(ModelTubes, TellsHosesOfThreeRadiiApart) {
+  const std::string data = folder_ / "hoses", results = folder_ / "results";
+  ASSERT_EQ(run_generate_dataset({TUBEBIN_SOURCE_DIR "/config/hoses.yaml", "--output", data, "--seed", "5", "--tubes",
+                                  "10", "--cases", "3"})
+                .exit_code,
+            0);
+  ASSERT_EQ(model_tubes({data, "--output", results, "--quiet"}).exit_code, 0);
+  const std::vector<evaluation::RunScore> runs = read_results({results}, {}).runs;
+  ASSERT_EQ(runs.size(), 3u);
+  for (const evaluation::RunScore& run : runs) EXPECT_GE(run.micro_recall, 0.98) << run.key.scene;
+}
 
 TEST_F(ModelTubes, WritesBothCloudsAndTheModelOfOne) {
   const std::string out = folder_ / "out";

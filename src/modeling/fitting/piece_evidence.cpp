@@ -171,8 +171,9 @@ bool stands_upright(const TubePiece& piece, const Vec3& up) {
 }
 
 bool is_inside(const TubePiece& piece, const TubePiece& solid) {
+  const double radius = std::max(piece.radius, solid.radius);
   const auto inside = std::ranges::count_if(
-      piece.nodes, [&](const Vec3& node) { return distance_to_polyline(node, solid.nodes) < solid.radius; });
+      piece.nodes, [&](const Vec3& node) { return distance_to_polyline(node, solid.nodes) < radius; });
   return 2 * inside > std::ssize(piece.nodes);
 }
 

@@ -35,7 +35,8 @@ bool is_doubtful(double length, double radius, double evidence);
 /// unit, or zero where it is not known, and nothing stands.
 bool stands_upright(const TubePiece& piece, const Vec3& up);
 
-/// Whether most of the piece's centreline runs inside another cylinder, as that of a streak along a bottle does.
+/// Whether most of the piece's centreline runs nearer to another one than a radius, the larger of the two: both solids can't
+/// be there. That of a streak along a bottle does.
 bool is_inside(const TubePiece& piece, const TubePiece& solid);
 
 }  // namespace tubebin::modeling

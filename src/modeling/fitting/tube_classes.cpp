@@ -28,11 +28,43 @@ constexpr double kLeastLength = 8.0;
 /// In nats, of a further radius' long pieces, which then know it to 1 %. Edges and rims seem round here and there, and of
 /// no one radius.
 constexpr double kFurtherEvidence = 5000.0;
+/// And as a part of the first radius': where tubes branch or touch, some surface is as round as a thicker tube.
+constexpr double kFurtherShare = 0.01;
 
 void keep_surest(std::vector<TubePiece>& pieces) {
   if (pieces.size() <= kMostPieces) return;
   std::ranges::stable_sort(pieces, std::greater<>(), &TubePiece::evidence);
   pieces.resize(kMostPieces);
+}
+
+/// A class, and pieces that may be bits of tubes of another radius.
+struct PossibleClass {
+  TubeClass sure;
+  std::vector<TubePiece> unsure;
+};
+
+/// Short and with little evidence, or of a curvature that is a little off.
+bool may_be_other(const TubePiece& piece, const PieceEvidence& evidence) {
+  constexpr double kOff = 0.05;
+  return is_doubtful(piece.length(), piece.radius, piece.evidence) ||
+         std::abs(evidence.curvature - 1.0) > kOff + 2.0 * evidence.curvature_error;
+}
+
+/// The classes with those unsure pieces where no other class surely has a tube.
+std::vector<TubeClass> settled(const std::vector<PossibleClass>& possible) {
+  std::vector<TubeClass> classes;
+  for (const PossibleClass& own : possible) {
+    classes.push_back(own.sure);
+    const auto is_other = [&](const TubePiece& piece) {
+      return std::ranges::any_of(possible, [&](const PossibleClass& other) {
+        return &other != &own &&
+               std::ranges::any_of(other.sure.pieces, [&](const TubePiece& solid) { return is_inside(piece, solid); });
+      });
+    };
+    std::ranges::remove_copy_if(own.unsure, std::back_inserter(classes.back().pieces), is_other);
+    keep_surest(classes.back().pieces);
+  }
+  return classes;
 }
 
 class ClassFinder {
@@ -47,29 +79,30 @@ class ClassFinder {
         up_(up) {}
 
   std::vector<TubeClass> find_told(const std::vector<double>& radii) {
-    std::vector<TubeClass> classes;
+    std::vector<PossibleClass> possible;
     for (const double radius : radii) {
-      classes.push_back(pieces_of(left(), radius));
-      if (radii.size() > 1) set_aside(classes.back().pieces);
+      possible.push_back(pieces_of(left(), radius));
+      if (radii.size() > 1) set_aside(possible.back().sure.pieces);
     }
-    return classes;
+    return settled(possible);
   }
 
   std::vector<TubeClass> find_all() {
-    std::vector<TubeClass> classes;
+    std::vector<PossibleClass> possible;
     std::vector<double> tried;
     const std::size_t enough = cloud_.points.size() / 100;
-    for (std::size_t k = 0; k < kMostTries && classes.size() < kMostClasses; ++k) {
+    for (std::size_t k = 0; k < kMostTries && possible.size() < kMostClasses; ++k) {
       if (rest_ && rest_->points.size() < enough) break;
       const double seen = likeliest_radius(left(), tried, enough);
       if (seen <= 0.0) break;
-      TubeClass found = refined_class(left(), seen, tried);
-      tried.push_back(found.radius > 0.0 ? found.radius : seen);
+      PossibleClass found = refined_class(left(), seen, tried);
+      tried.push_back(found.sure.radius > 0.0 ? found.sure.radius : seen);
       set_aside(standing_);
-      if (!is_believed(found, classes.empty())) continue;
-      set_aside(found.pieces);
-      classes.push_back(std::move(found));
+      if (!is_believed(found, possible)) continue;
+      set_aside(found.sure.pieces);
+      possible.push_back(std::move(found));
     }
+    std::vector<TubeClass> classes = settled(possible);
     for (TubeClass& found : classes) drop_streaks(found);
     std::erase_if(classes, [](const TubeClass& found) { return found.pieces.empty(); });
     return classes;
@@ -92,7 +125,7 @@ class ClassFinder {
 
   /// From the radius that places show to the one that the longest pieces show, and to all of its pieces. What tubes of a
   /// `tried` radius left over leads back to that one, and is not followed.
-  TubeClass refined_class(FilteredCloud& cloud, double radius, const std::vector<double>& tried) {
+  PossibleClass refined_class(FilteredCloud& cloud, double radius, const std::vector<double>& tried) {
     for (int round = 0; round < 2; ++round) {
       // Where points are sparse, normals from as many as a known radius would not let in are too flat.
       if (reach(cloud, radius) < 0.9 * reach(cloud, round == 0 ? 0.0 : 2.0 * radius))
@@ -107,11 +140,23 @@ class ClassFinder {
     return pieces_of(cloud, radius);
   }
 
-  static bool is_believed(const TubeClass& found, bool is_first) {
+  /// By its long pieces; those that are as unsure as one of an earlier class in their place don't count.
+  bool is_believed(const PossibleClass& found, const std::vector<PossibleClass>& earlier) {
+    const auto is_taken = [&](const TubePiece& piece) {
+      return std::ranges::any_of(earlier, [&](const PossibleClass& other) {
+        return std::ranges::any_of(other.unsure, [&](const TubePiece& solid) { return is_inside(piece, solid); });
+      });
+    };
     double evidence = 0.0;
-    for (const TubePiece& piece : found.pieces)
-      if (piece.length() >= kLeastLength * found.radius) evidence += piece.evidence;
-    return evidence > (is_first ? 0.0 : kFurtherEvidence);
+    const auto add = [&](const TubePiece& piece) {
+      if (piece.length() >= kLeastLength * piece.radius) evidence += piece.evidence;
+    };
+    std::ranges::for_each(found.sure.pieces, add);
+    for (const TubePiece& piece : found.unsure)
+      if (!is_taken(piece)) add(piece);
+    if (!earlier.empty()) return evidence > std::max(kFurtherEvidence, kFurtherShare * first_evidence_);
+    first_evidence_ = evidence;
+    return evidence > 0.0;
   }
 
   /// As the longest pieces that are tubes show it; 0 where none is.
@@ -141,10 +186,10 @@ class ClassFinder {
     return pieces.empty() ? 0.0 : refine_radius(pieces, sample.points, radius);
   }
 
-  TubeClass pieces_of(const FilteredCloud& cloud, double radius) {
+  PossibleClass pieces_of(const FilteredCloud& cloud, double radius) {
     // Points that lie closer together cost time and add nothing: these make 24 votes a voxel of segment_by_votes.
     const FilteredCloud sample = thinned(cloud, radius / 6.0, projection_, radius);
-    TubeClass found{.radius = radius, .radius_error = 0.0, .pieces = {}};
+    PossibleClass found{.sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}};
     const OcclusionTest occlusion = occlusion_.with_radius(radius);
     double information = 0.0;
     for (TubePiece& piece : find_centerline_pieces(sample, segment_by_votes(sample, radius), projection_, radius)) {
@@ -160,10 +205,9 @@ class ClassFinder {
       const double deviations = evidence.curvature / evidence.curvature_error;
       piece.evidence = 0.5 * deviations * deviations;
       information += 1.0 / (evidence.curvature_error * evidence.curvature_error);
-      found.pieces.push_back(std::move(piece));
+      (may_be_other(piece, evidence) ? found.unsure : found.sure.pieces).push_back(std::move(piece));
     }
-    if (information > 0.0) found.radius_error = radius / std::sqrt(information);
-    keep_surest(found.pieces);
+    if (information > 0.0) found.sure.radius_error = radius / std::sqrt(information);
     return found;
   }
 
@@ -193,6 +237,7 @@ class ClassFinder {
   Vec3 up_;
   std::optional<FilteredCloud> rest_;
   std::vector<TubePiece> standing_;
+  double first_evidence_ = 0.0;  ///< nats, of the first radius' long pieces
 };
 
 }  // namespace

@@ -277,13 +277,18 @@ class TreeJoiner {
   std::unordered_map<std::uint64_t, std::size_t> tree_of_key_;
 };
 
-/// The longest length that three of the paths have to a radius; infinite where there is none.
+/// The longest length that three of the paths have to a radius, and no less of all that is seen than what is longer: else
+/// arms of forks are alike by chance. Infinite where there is none.
 double recurring_length(const std::vector<TubePiece>& paths) {
   std::vector<double> lengths;
   for (const TubePiece& path : paths) lengths.push_back(path.length());
   std::sort(lengths.begin(), lengths.end(), std::greater<>());
-  for (std::size_t k = 2; k < lengths.size(); ++k)
-    if (lengths[k - 2] - lengths[k] <= paths.front().radius) return lengths[k - 1];
+  double longer = 0.0;
+  for (std::size_t k = 2; k < lengths.size(); ++k) {
+    if (lengths[k - 2] - lengths[k] <= paths.front().radius)
+      return 3.0 * lengths[k - 1] >= longer ? lengths[k - 1] : std::numeric_limits<double>::infinity();
+    longer += lengths[k - 2];
+  }
   return std::numeric_limits<double>::infinity();
 }
 
@@ -291,6 +296,39 @@ double recurring_length(const std::vector<TubePiece>& paths) {
 void keep_one_of_each_branch(std::vector<BranchLink>& links) {
   std::set<std::uint32_t> branches;
   std::erase_if(links, [&](const BranchLink& link) { return !branches.insert(link.end / 2).second; });
+}
+
+/// Cuts the path's last end back to where it runs through another one, clear of that one's ends, within its last two radii:
+/// no tube does, so it is a branch that was followed beyond its start.
+void cut_end_beyond(const std::vector<Vec3>& other, double radius, TubePath& path) {
+  double left = 2.0 * radius;
+  if (distance_to_polyline(path.nodes.back(), other) > left + radius / 2.0) return;
+  for (std::size_t k = path.nodes.size() - 1; k > 0 && left > 0.0 && !path.bridged[k - 1]; --k) {
+    const Vec3 back = path.nodes[k - 1] - path.nodes[k];
+    const double length = std::min(back.norm(), left);
+    for (double at = 0.0; at < length; at += radius / 8.0) {
+      const Vec3 here = path.nodes[k] + at * back.normalized(), place = nearest_on_polyline(here, other);
+      if ((place - here).norm() > radius / 2.0 || (place - other.front()).norm() <= radius ||
+          (place - other.back()).norm() <= radius)
+        continue;
+      path.nodes.resize(k + 1);
+      path.bridged.resize(k);
+      path.nodes.back() = here;
+      return;
+    }
+    left -= length;
+  }
+}
+
+void cut_ends_beyond_others(std::vector<TubePath>& paths, double radius) {
+  for (std::size_t k = 0; k < paths.size(); ++k)
+    for (int end = 0; end < 2; ++end) {
+      for (std::size_t other = 0; other < paths.size(); ++other)
+        if (other != k) cut_end_beyond(paths[other].nodes, radius, paths[k]);
+      std::reverse(paths[k].nodes.begin(), paths[k].nodes.end());
+      std::reverse(paths[k].bridged.begin(), paths[k].bridged.end());
+      std::reverse(paths[k].bridge_odds.begin(), paths[k].bridge_odds.end());
+    }
 }
 
 std::vector<TubePiece> pieces_of(const std::vector<TubePath>& paths, double radius) {
@@ -318,9 +356,10 @@ std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double 
   return tubes;
 }
 
-std::vector<TubeModel> join_likely_branches(const std::vector<TubePath>& paths, double radius,
-                                            const OcclusionTest& occlusion, double tube_length) {
+std::vector<TubeModel> join_likely_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion,
+                                            double tube_length) {
   if (paths.empty()) return {};
+  cut_ends_beyond_others(paths, radius);
   const std::vector<TubePiece> pieces = pieces_of(paths, radius);
   const double whole = tube_length > 0.0 ? tube_length : recurring_length(pieces);
   const auto is_whole = [&](const TubePiece& path) { return std::abs(path.length() - whole) <= radius; };

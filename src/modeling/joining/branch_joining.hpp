@@ -17,7 +17,7 @@ std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double 
 /// The same where few tubes branch or none: the paths that start at another's side likelier than not are branches. A path as
 /// long as the tubes have in common (`tube_length`, metres; 0: the longest length that recurs) is whole, neither a branch nor
 /// a trunk. No tube becomes longer, but for what surely branches where lengths merely recur.
-std::vector<TubeModel> join_likely_branches(const std::vector<TubePath>& paths, double radius,
-                                            const OcclusionTest& occlusion, double tube_length);
+std::vector<TubeModel> join_likely_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion,
+                                            double tube_length);
 
 }  // namespace tubebin::modeling
