@@ -169,6 +169,19 @@ TEST_F(ShapeJoiningUnderLid, ABentPieceIsACopyByItself) {
   EXPECT_EQ(joining.paths.size(), 1u);
 }
 
+TEST_F(ShapeJoiningUnderLid, TheSceneShowsTheShapeThoughTubesSeemToBranch) {
+  std::vector<TubePiece> pieces = back_to_back();
+  const Pose onto_middle = turned(0.0, {kLeg + 0.4 * kRadius, -kMiddle / 2.0, 0});  // as fits of rough rods may lie
+  for (const Pose& pose : {turned(30.0, {-0.4, 0.6, 0}), turned(-70.0, {0.4, -0.6, 0})}) {
+    pieces.push_back(piece_along(moved(kU, pose)));
+    pieces.push_back(piece_along(moved(kU, pose * onto_middle)));
+  }
+  const Joining joining = join_pieces(pieces, occlusion(), 0.0);
+  EXPECT_NEAR(joining.tube_length, kLength, 2.0 * kRadius);
+  ASSERT_EQ(joining.paths.size(), 6u);
+  for (const TubePath& path : joining.paths) EXPECT_NEAR(polyline_length(path.nodes), kLength, 3.0 * kRadius);
+}
+
 TEST_F(ShapeJoiningUnderLid, TheSceneShowsTheShapeItself) {
   std::vector<TubePiece> pieces = back_to_back();
   pieces.push_back(piece_along(moved(kU, turned(30.0, {-0.2, 0.4, 0}))));

@@ -31,37 +31,41 @@ constexpr double kFurtherEvidence = 5000.0;
 /// And as a part of the first radius': where tubes branch or touch, some surface is as round as a thicker tube.
 constexpr double kFurtherShare = 0.01;
 
+/// In units of 1 / radius: so far off bends and joints put a tube's curvature.
+constexpr double kSureOff = 0.05;
+
 void keep_surest(std::vector<TubePiece>& pieces) {
   if (pieces.size() <= kMostPieces) return;
   std::ranges::stable_sort(pieces, std::greater<>(), &TubePiece::evidence);
   pieces.resize(kMostPieces);
 }
 
-/// A class, and pieces that may be bits of tubes of another radius.
-struct PossibleClass {
-  TubeClass sure;
-  std::vector<TubePiece> unsure;
+/// Short and with little evidence, or of a curvature that is a little off: it may be a bit of a tube of another radius.
+struct UnsurePiece {
+  TubePiece piece;
+  double off = 0.0;  ///< curvature, in units of 1 / radius
 };
 
-/// Short and with little evidence, or of a curvature that is a little off.
-bool may_be_other(const TubePiece& piece, const PieceEvidence& evidence) {
-  constexpr double kOff = 0.05;
-  return is_doubtful(piece.length(), piece.radius, piece.evidence) ||
-         std::abs(evidence.curvature - 1.0) > kOff + 2.0 * evidence.curvature_error;
-}
+struct PossibleClass {
+  TubeClass sure;
+  std::vector<UnsurePiece> unsure;
+  double evidence = 0.0;  ///< nats, of its long pieces
+};
 
 /// The classes with those unsure pieces where no other class surely has a tube.
 std::vector<TubeClass> settled(const std::vector<PossibleClass>& possible) {
   std::vector<TubeClass> classes;
   for (const PossibleClass& own : possible) {
     classes.push_back(own.sure);
-    const auto is_other = [&](const TubePiece& piece) {
+    const auto is_other = [&](const UnsurePiece& unsure) {
       return std::ranges::any_of(possible, [&](const PossibleClass& other) {
-        return &other != &own &&
-               std::ranges::any_of(other.sure.pieces, [&](const TubePiece& solid) { return is_inside(piece, solid); });
+        return &other != &own && std::ranges::any_of(other.sure.pieces, [&](const TubePiece& solid) {
+          return is_inside(unsure.piece, solid);
+        });
       });
     };
-    std::ranges::remove_copy_if(own.unsure, std::back_inserter(classes.back().pieces), is_other);
+    for (const UnsurePiece& unsure : own.unsure)
+      if (!is_other(unsure)) classes.back().pieces.push_back(unsure.piece);
     keep_surest(classes.back().pieces);
   }
   return classes;
@@ -81,7 +85,7 @@ class ClassFinder {
   std::vector<TubeClass> find_told(const std::vector<double>& radii) {
     std::vector<PossibleClass> possible;
     for (const double radius : radii) {
-      possible.push_back(pieces_of(left(), radius));
+      possible.push_back(pieces_of(left(), radius, possible));
       if (radii.size() > 1) set_aside(possible.back().sure.pieces);
     }
     return settled(possible);
@@ -95,7 +99,7 @@ class ClassFinder {
       if (rest_ && rest_->points.size() < enough) break;
       const double seen = likeliest_radius(left(), tried, enough);
       if (seen <= 0.0) break;
-      PossibleClass found = refined_class(left(), seen, tried);
+      PossibleClass found = refined_class(left(), seen, tried, possible);
       tried.push_back(found.sure.radius > 0.0 ? found.sure.radius : seen);
       set_aside(standing_);
       if (!is_believed(found, possible)) continue;
@@ -125,7 +129,8 @@ class ClassFinder {
 
   /// From the radius that places show to the one that the longest pieces show, and to all of its pieces. What tubes of a
   /// `tried` radius left over leads back to that one, and is not followed.
-  PossibleClass refined_class(FilteredCloud& cloud, double radius, const std::vector<double>& tried) {
+  PossibleClass refined_class(FilteredCloud& cloud, double radius, const std::vector<double>& tried,
+                              const std::vector<PossibleClass>& earlier) {
     for (int round = 0; round < 2; ++round) {
       // Where points are sparse, normals from as many as a known radius would not let in are too flat.
       if (reach(cloud, radius) < 0.9 * reach(cloud, round == 0 ? 0.0 : 2.0 * radius))
@@ -137,26 +142,12 @@ class ClassFinder {
       radius = refined;
       if (is_settled) break;
     }
-    return pieces_of(cloud, radius);
+    return pieces_of(cloud, radius, earlier);
   }
 
-  /// By its long pieces; those that are as unsure as one of an earlier class in their place don't count.
-  bool is_believed(const PossibleClass& found, const std::vector<PossibleClass>& earlier) {
-    const auto is_taken = [&](const TubePiece& piece) {
-      return std::ranges::any_of(earlier, [&](const PossibleClass& other) {
-        return std::ranges::any_of(other.unsure, [&](const TubePiece& solid) { return is_inside(piece, solid); });
-      });
-    };
-    double evidence = 0.0;
-    const auto add = [&](const TubePiece& piece) {
-      if (piece.length() >= kLeastLength * piece.radius) evidence += piece.evidence;
-    };
-    std::ranges::for_each(found.sure.pieces, add);
-    for (const TubePiece& piece : found.unsure)
-      if (!is_taken(piece)) add(piece);
-    if (!earlier.empty()) return evidence > std::max(kFurtherEvidence, kFurtherShare * first_evidence_);
-    first_evidence_ = evidence;
-    return evidence > 0.0;
+  static bool is_believed(const PossibleClass& found, const std::vector<PossibleClass>& earlier) {
+    if (earlier.empty()) return found.evidence > 0.0;
+    return found.evidence > std::max(kFurtherEvidence, kFurtherShare * earlier.front().evidence);
   }
 
   /// As the longest pieces that are tubes show it; 0 where none is.
@@ -186,10 +177,10 @@ class ClassFinder {
     return pieces.empty() ? 0.0 : refine_radius(pieces, sample.points, radius);
   }
 
-  PossibleClass pieces_of(const FilteredCloud& cloud, double radius) {
+  PossibleClass pieces_of(const FilteredCloud& cloud, double radius, const std::vector<PossibleClass>& earlier) {
     // Points that lie closer together cost time and add nothing: these make 24 votes a voxel of segment_by_votes.
     const FilteredCloud sample = thinned(cloud, radius / 6.0, projection_, radius);
-    PossibleClass found{.sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}};
+    PossibleClass found{.sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}, .evidence = 0.0};
     const OcclusionTest occlusion = occlusion_.with_radius(radius);
     double information = 0.0;
     for (TubePiece& piece : find_centerline_pieces(sample, segment_by_votes(sample, radius), projection_, radius)) {
@@ -205,10 +196,23 @@ class ClassFinder {
       const double deviations = evidence.curvature / evidence.curvature_error;
       piece.evidence = 0.5 * deviations * deviations;
       information += 1.0 / (evidence.curvature_error * evidence.curvature_error);
-      (may_be_other(piece, evidence) ? found.unsure : found.sure.pieces).push_back(std::move(piece));
+      const double off = std::abs(evidence.curvature - 1.0);
+      if (piece.length() >= kLeastLength * radius && !is_known(piece, off, earlier)) found.evidence += piece.evidence;
+      if (is_doubtful(piece.length(), radius, piece.evidence) || off > kSureOff + 2.0 * evidence.curvature_error)
+        found.unsure.push_back({std::move(piece), off});
+      else found.sure.pieces.push_back(std::move(piece));
     }
     if (information > 0.0) found.sure.radius_error = radius / std::sqrt(information);
     return found;
+  }
+
+  /// Whether it fits hardly better than an unsure piece of an earlier class in its place.
+  static bool is_known(const TubePiece& piece, double off, const std::vector<PossibleClass>& earlier) {
+    return std::ranges::any_of(earlier, [&](const PossibleClass& other) {
+      return std::ranges::any_of(other.unsure, [&](const UnsurePiece& unsure) {
+        return unsure.off < 2.0 * off && is_inside(piece, unsure.piece);
+      });
+    });
   }
 
   /// A streak of a bottle's side may look like a tube of a smaller radius.
@@ -237,7 +241,6 @@ class ClassFinder {
   Vec3 up_;
   std::optional<FilteredCloud> rest_;
   std::vector<TubePiece> standing_;
-  double first_evidence_ = 0.0;  ///< nats, of the first radius' long pieces
 };
 
 }  // namespace

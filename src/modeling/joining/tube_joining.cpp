@@ -179,7 +179,7 @@ Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& o
   // Where tubes branch, chains are parts of them.
   if (tube_length <= 0.0 && !search.tubes_branch())
     cover = with_common_length(with_longest_length(cover, search), search);
-  if (tries_shape && !search.tubes_branch()) {
+  if (tries_shape) {
     if (auto alike = with_common_shape(cover, pieces, occlusion))
       return with_rest(std::move(*alike), occlusion, tube_length);
   }
