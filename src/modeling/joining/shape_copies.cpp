@@ -92,7 +92,7 @@ class CopyFinder {
   }
 
   /// Fits the copy to the sections that it explains. Most copies are hopeless after the first round.
-  void consider(Pose pose) {
+  void consider(const Pose& pose) {
     constexpr int kRounds = 4, kMostTries = 8;
     constexpr double kHopelessCost = 2.0 * kCopyCostLimit;
     std::vector<PlacedSection> placed = explained_by(pose, 1.5 * radius_);
