@@ -48,7 +48,6 @@ struct RigidWorld::Impl {
   std::optional<std::size_t> pulled;     ///< the tube that is held, whatever pushes
   std::vector<scene::PlacedTube> tubes;  ///< poses are the bodies'
   std::vector<dBodyID> bodies;
-  std::vector<bool> asleep;  ///< tubes that stand still, with the contacts that they have, until something touches them
   std::vector<tube::MassProperties> masses;
   std::vector<double> inverse_masses;             ///< 1/kg
   std::vector<Eigen::Matrix3d> inverse_inertias;  ///< about the centre of mass, tube frame
@@ -63,7 +62,6 @@ struct RigidWorld::Impl {
     dBodySetMass(body, &mass);
     set_pose(body, tube.world_from_tube, properties.center);
     bodies.push_back(body);
-    asleep.push_back(false);
     inverse_masses.push_back(1.0 / properties.mass);
     inverse_inertias.push_back(properties.inertia.inverse());
     shapes.emplace_back(tube);
@@ -72,8 +70,7 @@ struct RigidWorld::Impl {
   void remove(std::size_t i) {
     dBodyDestroy(bodies[i]);
     const auto erase = [i](auto& of_each) { of_each.erase(of_each.begin() + static_cast<std::ptrdiff_t>(i)); };
-    erase(tubes), erase(bodies), erase(asleep), erase(masses), erase(inverse_masses), erase(inverse_inertias),
-        erase(shapes);
+    erase(tubes), erase(bodies), erase(masses), erase(inverse_masses), erase(inverse_inertias), erase(shapes);
     near_cylinders = {};
     std::erase_if(contacts, [i](const StepContact& c) { return c.first == i || c.second == i; });
     for (StepContact& contact : contacts) {
@@ -115,13 +112,13 @@ struct RigidWorld::Impl {
     for (std::size_t i = 0; i < shapes.size(); ++i) margins.push_back(margin_of(i, time_step));
     near_cylinders.follow(shapes, margins);
     for (std::size_t j = 0; j < shapes.size(); ++j) {
-      if (pulled != j && !asleep[j]) {
+      if (pulled != j && !is_asleep(j)) {
         collide(boxes, shapes[j], -margins[j], touches);
         collide(mesh, shapes[j], -margins[j], touches);
       }
       append(kBinBody, j);
       for (const NearTube& near : near_cylinders.near(j)) {
-        if (asleep[j] && asleep[near.first]) continue;
+        if (is_asleep(j) && is_asleep(near.first)) continue;
         collide(shapes[near.first], shapes[j], near.cylinders, -std::max(margins[near.first], margins[j]), touches);
         append(near.first, j);
       }
@@ -158,14 +155,16 @@ struct RigidWorld::Impl {
     if (contact.first != kBinBody) add(contact.first, -contact.force, -contact.resistance);
   }
 
+  /// A tube that sleeps stands still, with the contacts that it has, until something touches it.
+  bool is_asleep(std::size_t i) const { return !dBodyIsEnabled(bodies[i]); }
+
   /// All tubes in a chain of `touching` contacts with the tube wake.
   void wake(std::size_t tube, const std::vector<StepContact>& touching) {
-    asleep[tube] = false;
     dBodyEnable(bodies[tube]);
     for (const StepContact& contact : touching) {
       if (contact.first == kBinBody || (contact.first != tube && contact.second != tube)) continue;
       const std::size_t other = contact.first == tube ? contact.second : contact.first;
-      if (asleep[other]) wake(other, touching);
+      if (is_asleep(other)) wake(other, touching);
     }
   }
 
@@ -174,15 +173,16 @@ struct RigidWorld::Impl {
     bool woke = false;
     for (const StepContact& contact : contacts)
       for (const std::size_t tube : {contact.first, contact.second})
-        if (tube != kBinBody && asleep[tube]) wake(tube, before), woke = true;
+        if (tube != kBinBody && is_asleep(tube)) wake(tube, before), woke = true;
     return woke;
   }
 
   /// Contacts of tubes that sleep stay as they are.
   void keep_sleeping_contacts(const std::vector<StepContact>& before) {
+    const auto awake = std::ssize(contacts);
     std::ranges::copy_if(before, std::back_inserter(contacts),
-                         [this](const StepContact& c) { return asleep[c.second]; });
-    std::ranges::stable_sort(contacts, {}, contact_bodies);
+                         [this](const StepContact& contact) { return is_asleep(contact.second); });
+    std::ranges::inplace_merge(contacts, contacts.begin() + awake, {}, contact_bodies);
   }
 
   /// Finds the contacts and what they bear, and lets ODE move the bodies under those forces.
@@ -200,7 +200,7 @@ struct RigidWorld::Impl {
     solve_contacts(options, time_step, std::move(unhindered_bodies), contacts);
     for (const StepContact& contact : contacts) apply(contact);
     dWorldQuickStep(world, time_step);
-    if (std::ranges::count(asleep, true) > 0) keep_sleeping_contacts(before);
+    keep_sleeping_contacts(before);
   }
 
   void limit_speed(dBodyID body) const {
@@ -245,7 +245,7 @@ RigidWorld::~RigidWorld() {
 void RigidWorld::step(double time_step) {
   impl_->solve(time_step);
   for (std::size_t i = 0; i < impl_->bodies.size(); ++i) {
-    if (impl_->asleep[i]) continue;
+    if (impl_->is_asleep(i)) continue;
     impl_->limit_speed(impl_->bodies[i]);
     impl_->read_pose(i);
     impl_->shapes[i].follow(impl_->tubes[i]);
@@ -267,7 +267,6 @@ bool RigidWorld::has_guards() const { return impl_->guards_stand; }
 
 void RigidWorld::let_sleep_beyond(std::size_t tube) {
   if (impl_->contacts.empty()) return;  // nobody knows yet what touches what
-  impl_->asleep.assign(impl_->bodies.size(), true);
   for (const dBodyID body : impl_->bodies) dBodyDisable(body);
   impl_->wake(tube, impl_->contacts);
 }

@@ -164,12 +164,12 @@ TEST_F(GenerateDataset, WritesEveryFormatSoThatItVerifies) {
 
 TEST_F(GenerateDataset, DrawsPreviewsThatNeitherChangeNorDependOnTheRest) {
   if (!render::can_render()) GTEST_SKIP() << "this build cannot draw";
-  ASSERT_EQ(generate(data_, {"--cases", "1"}).exit_code, 0);
-  ASSERT_EQ(generate(folder_ / "one", {"--cases", "1", "--preview", "--jobs", "1"}).exit_code, 0);
-  ASSERT_EQ(generate(folder_ / "two", {"--cases", "1", "--preview", "--jobs", "2"}).exit_code, 0);
+  ASSERT_EQ(generate(data_, {"--cases", "2"}).exit_code, 0);
+  ASSERT_EQ(generate(folder_ / "one", {"--cases", "2", "--preview", "--jobs", "1"}).exit_code, 0);
+  ASSERT_EQ(generate(folder_ / "two", {"--cases", "2", "--preview", "--jobs", "2"}).exit_code, 0);
   auto with_pictures = scene_files(folder_ / "one");
   EXPECT_EQ(scene_files(folder_ / "two"), with_pictures);
-  for (const std::string scene : {"Q1/001", "Q3/001"})
+  for (const std::string scene : {"Q1/001", "Q1/002", "Q3/001", "Q3/002"})
     for (const std::string picture : {"/preview.png", "/ground_truth.png"}) {
       const auto png = with_pictures.extract(scene + picture);
       ASSERT_FALSE(png.empty()) << scene << picture;

@@ -152,7 +152,7 @@ void expect_gaps_of_the_sampled_surface(const scene::Bin& bin) {
   options.cylinder_count_min = 1;
   options.cylinder_count_max = 3;
   int compared = 0;
-  for (int trial = 0; trial < 4000 && compared < 25; ++trial) {
+  for (int trial = 0; trial < 4000 && compared < 40; ++trial) {
     const Vec3 place(random.uniform(-0.3, 0.3), random.uniform(-0.2, 0.2), random.uniform(0.0, 0.3));
     const scene::PlacedTube tube{tube::generate_tubes(1, options, random).front(), make_pose(random.rotation(), place)};
     std::vector<Touch> touches;
@@ -167,7 +167,7 @@ void expect_gaps_of_the_sampled_surface(const scene::Bin& bin) {
     EXPECT_LT(-depth, gap + 0.00083) << "trial " << trial;
     EXPECT_GT(-depth, gap - 0.0007) << "trial " << trial;
   }
-  EXPECT_EQ(compared, 25);
+  EXPECT_EQ(compared, 40);
 }
 
 TEST(Collision, GapsToTheBinMatchTheSampledSurface) {

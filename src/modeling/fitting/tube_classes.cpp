@@ -46,6 +46,7 @@ struct UnsurePiece {
   double off = 0.0;  ///< curvature, in units of 1 / radius
 };
 
+/// What was found of a radius, before others are known.
 struct PossibleClass {
   TubeClass sure;
   std::vector<UnsurePiece> unsure;
@@ -83,30 +84,28 @@ class ClassFinder {
         up_(up) {}
 
   std::vector<TubeClass> find_told(const std::vector<double>& radii) {
-    std::vector<PossibleClass> possible;
     for (const double radius : radii) {
-      possible.push_back(pieces_of(left(), radius, possible));
-      if (radii.size() > 1) set_aside(possible.back().sure.pieces);
+      possible_.push_back(pieces_of(left(), radius));
+      if (radii.size() > 1) set_aside(possible_.back().sure.pieces);
     }
-    return settled(possible);
+    return settled(possible_);
   }
 
   std::vector<TubeClass> find_all() {
-    std::vector<PossibleClass> possible;
     std::vector<double> tried;
     const std::size_t enough = cloud_.points.size() / 100;
-    for (std::size_t k = 0; k < kMostTries && possible.size() < kMostClasses; ++k) {
+    for (std::size_t k = 0; k < kMostTries && possible_.size() < kMostClasses; ++k) {
       if (rest_ && rest_->points.size() < enough) break;
       const double seen = likeliest_radius(left(), tried, enough);
       if (seen <= 0.0) break;
-      PossibleClass found = refined_class(left(), seen, tried, possible);
+      PossibleClass found = refined_class(left(), seen, tried);
       tried.push_back(found.sure.radius > 0.0 ? found.sure.radius : seen);
       set_aside(standing_);
-      if (!is_believed(found, possible)) continue;
+      if (!is_believed(found)) continue;
       set_aside(found.sure.pieces);
-      possible.push_back(std::move(found));
+      possible_.push_back(std::move(found));
     }
-    std::vector<TubeClass> classes = settled(possible);
+    std::vector<TubeClass> classes = settled(possible_);
     for (TubeClass& found : classes) drop_streaks(found);
     std::erase_if(classes, [](const TubeClass& found) { return found.pieces.empty(); });
     return classes;
@@ -129,8 +128,7 @@ class ClassFinder {
 
   /// From the radius that places show to the one that the longest pieces show, and to all of its pieces. What tubes of a
   /// `tried` radius left over leads back to that one, and is not followed.
-  PossibleClass refined_class(FilteredCloud& cloud, double radius, const std::vector<double>& tried,
-                              const std::vector<PossibleClass>& earlier) {
+  PossibleClass refined_class(FilteredCloud& cloud, double radius, const std::vector<double>& tried) {
     for (int round = 0; round < 2; ++round) {
       // Where points are sparse, normals from as many as a known radius would not let in are too flat.
       if (reach(cloud, radius) < 0.9 * reach(cloud, round == 0 ? 0.0 : 2.0 * radius))
@@ -142,12 +140,12 @@ class ClassFinder {
       radius = refined;
       if (is_settled) break;
     }
-    return pieces_of(cloud, radius, earlier);
+    return pieces_of(cloud, radius);
   }
 
-  static bool is_believed(const PossibleClass& found, const std::vector<PossibleClass>& earlier) {
-    if (earlier.empty()) return found.evidence > 0.0;
-    return found.evidence > std::max(kFurtherEvidence, kFurtherShare * earlier.front().evidence);
+  bool is_believed(const PossibleClass& found) const {
+    if (possible_.empty()) return found.evidence > 0.0;
+    return found.evidence > std::max(kFurtherEvidence, kFurtherShare * possible_.front().evidence);
   }
 
   /// As the longest pieces that are tubes show it; 0 where none is.
@@ -177,7 +175,7 @@ class ClassFinder {
     return pieces.empty() ? 0.0 : refine_radius(pieces, sample.points, radius);
   }
 
-  PossibleClass pieces_of(const FilteredCloud& cloud, double radius, const std::vector<PossibleClass>& earlier) {
+  PossibleClass pieces_of(const FilteredCloud& cloud, double radius) {
     // Points that lie closer together cost time and add nothing: these make 24 votes a voxel of segment_by_votes.
     const FilteredCloud sample = thinned(cloud, radius / 6.0, projection_, radius);
     PossibleClass found{.sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}, .evidence = 0.0};
@@ -197,7 +195,7 @@ class ClassFinder {
       piece.evidence = 0.5 * deviations * deviations;
       information += 1.0 / (evidence.curvature_error * evidence.curvature_error);
       const double off = std::abs(evidence.curvature - 1.0);
-      if (piece.length() >= kLeastLength * radius && !is_known(piece, off, earlier)) found.evidence += piece.evidence;
+      if (piece.length() >= kLeastLength * radius && !is_known(piece, off)) found.evidence += piece.evidence;
       if (is_doubtful(piece.length(), radius, piece.evidence) || off > kSureOff + 2.0 * evidence.curvature_error)
         found.unsure.push_back({std::move(piece), off});
       else found.sure.pieces.push_back(std::move(piece));
@@ -207,8 +205,8 @@ class ClassFinder {
   }
 
   /// Whether it fits hardly better than an unsure piece of an earlier class in its place.
-  static bool is_known(const TubePiece& piece, double off, const std::vector<PossibleClass>& earlier) {
-    return std::ranges::any_of(earlier, [&](const PossibleClass& other) {
+  bool is_known(const TubePiece& piece, double off) const {
+    return std::ranges::any_of(possible_, [&](const PossibleClass& other) {
       return std::ranges::any_of(other.unsure, [&](const UnsurePiece& unsure) {
         return unsure.off < 2.0 * off && is_inside(piece, unsure.piece);
       });
@@ -241,6 +239,7 @@ class ClassFinder {
   Vec3 up_;
   std::optional<FilteredCloud> rest_;
   std::vector<TubePiece> standing_;
+  std::vector<PossibleClass> possible_;  ///< of the radii so far
 };
 
 }  // namespace

@@ -17,6 +17,9 @@ namespace {
 /// As in join_candidates.cpp: log of how seldom a place that a tube takes up is measured as empty.
 constexpr double kEmptyPlaceCost = 4.6;
 
+/// A copy that costs as much after its first fit costs too much after the others, too.
+constexpr double kHopelessCost = 2.0 * kCopyCostLimit;
+
 /// Of a section on a copy: half a second's worth. Scans of six to eleven rods take 0.2 to 1.2 million.
 constexpr std::size_t kMostTests = 5'000'000;
 
@@ -94,7 +97,6 @@ class CopyFinder {
   /// Fits the copy to the sections that it explains. Most copies are hopeless after the first round.
   void consider(const Pose& pose) {
     constexpr int kRounds = 4, kMostTries = 8;
-    constexpr double kHopelessCost = 2.0 * kCopyCostLimit;
     std::vector<PlacedSection> placed = explained_by(pose, 1.5 * radius_);
     if (!fix_pose(placed) || ++tries_[places_of(placed)] > kMostTries) return;
     ShapeCopy copy{.shape = &shape_, .pose = pose, .placed = std::move(placed), .cost = 0.0};
@@ -230,7 +232,7 @@ class CopyFinder {
     for (const PlacedSection& each : copy.placed)
       for (std::size_t k = each.first; k <= each.last; ++k) is_shown[k] = true;
     double cost = 0.0;
-    for (std::size_t k = 0; k < shape_.size() && cost <= 2.0 * kCopyCostLimit; ++k) {
+    for (std::size_t k = 0; k < shape_.size() && cost <= kHopelessCost; ++k) {
       if (is_shown[k]) continue;
       const Vec3 place = copy.pose * shape_[k], along = copy.pose.linear() * tangents_[k];
       cost += kEmptyPlaceCost / 4.0 * (is_taken(place, others) ? 1.0 : occlusion_.around(place, along).empty);
