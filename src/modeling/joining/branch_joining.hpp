@@ -11,7 +11,7 @@ namespace tubebin::modeling {
 /// The tubes, as sets of paths, that explain the scan best: links (branch_links.hpp) by their likelihood, and the length
 /// of all paths together as common to the scene's tubes as `tube_length` says (metres; 0: what those in sight agree on,
 /// if they do). Each branch is led up to the centreline that it branches off.
-std::vector<TubeModel> join_branches(const std::vector<TubePath>& paths, double radius, const OcclusionTest& occlusion,
+std::vector<TubeModel> join_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion,
                                      double tube_length);
 
 /// The same where few tubes branch or none: the paths that start at another's side likelier than not are branches. A path as
