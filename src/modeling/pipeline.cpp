@@ -71,7 +71,7 @@ std::vector<TubeModel> join_classes(const std::vector<TubeClass>& classes, const
     explained += joining.explained * length_of(found.pieces);
     std::ranges::move(joining.tubes_branch
                           ? join_branches(joining.paths, found.radius, occlusion, options.tube_length)
-                          : join_likely_branches(joining.paths, found.radius, occlusion, joining.tube_length),
+                          : join_likely_branches(joining.paths, found.radius, occlusion, options.tube_length),
                       std::back_inserter(tubes));
   }
   if (!told.empty() && explained < seen / 2.0)

@@ -58,11 +58,13 @@ TEST_F(BranchJoining, OnlyASureBranchMakesATubeLongerThanALengthThatRecurs) {
 }
 
 TEST_F(BranchJoining, ABranchThatWasFollowedBeyondItsTrunkIsCutBackToIt) {
-  const auto tubes = join_likely_branches(tree(0.3, -1.5 * kRadius), kRadius, occlusion(), 0.0);
-  ASSERT_EQ(tubes.size(), 1u);
-  ASSERT_EQ(tubes[0].paths.size(), 2u);
-  EXPECT_NEAR(tubes[0].length(), 0.4, kRadius);
-  for (const Vec3& node : tubes[0].paths[1].nodes) EXPECT_GT(node.y(), 0.3 - 0.6 * kRadius);
+  for (const auto join : {join_branches, join_likely_branches}) {
+    const auto tubes = join(tree(0.3, -1.5 * kRadius), kRadius, occlusion(), 0.0);
+    ASSERT_EQ(tubes.size(), 1u);
+    ASSERT_EQ(tubes[0].paths.size(), 2u);
+    EXPECT_NEAR(tubes[0].length(), 0.4, kRadius);
+    for (const Vec3& node : tubes[0].paths[1].nodes) EXPECT_GT(node.y(), 0.3 - 0.6 * kRadius);
+  }
 }
 
 TEST_F(BranchJoining, ArmsThatAreAlikeByChanceShowNoLengthThatRecurs) {
