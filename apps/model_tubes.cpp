@@ -8,6 +8,7 @@
 #include "program.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/core/atomic_file.hpp"
+#include "tubebin/core/memory.hpp"
 #include "tubebin/core/path_status.hpp"
 #include "tubebin/core/version.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
@@ -208,6 +209,7 @@ int model_one(const Arguments& arguments) {
       !arguments.shard.empty())
     throw_config_error("{} is a file: --ratios, --method both, --cases, --shard and --keep-clouds are for data sets",
                        arguments.input);
+  keep_memory();
   results::ModelConfig config = resolve_config(arguments);
   results::CloudToModel input = results::read_cloud_to_model(arguments.input, arguments.scale);
   tell_viewpoints(input, arguments);

@@ -1,11 +1,10 @@
 // Scenes by emptying piles, beside scenes by a drop each: emptying_table CONFIG.yaml FOLDER PILES LIFTS TUBES...
 // FOLDER is new and lies on the disk that is written to. Each pile is dropped with the seed of one and the same case, and
 // taken apart by LIFTS lifts; processor time of one process, rejected attempts included.
-#include <malloc.h>
-
 #include <ctime>
 
 #include "dataset/pile.hpp"
+#include "tubebin/core/memory.hpp"
 #include "tubebin/dataset/scene_store.hpp"
 
 namespace {
@@ -52,16 +51,10 @@ void make_scenes(const dataset::DatasetConfig& config, const dataset::SceneStore
 
 double milliseconds_a_scene(const Costs& costs) { return costs.seconds / costs.scenes * 1e3; }
 
-/// As worker processes do (src/jobs/worker_process.cpp).
-void keep_memory() {
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 256 << 20);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) try {
-  keep_memory();
+  keep_memory();  // as worker processes do
   if (argc < 6) throw_config_error("usage: emptying_table CONFIG.yaml FOLDER PILES LIFTS TUBES...");
   const dataset::DatasetConfig config = dataset::load_config(argv[1]);
   const dataset::SceneStore store(OutputFolder(argv[2]), config.output);

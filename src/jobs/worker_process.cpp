@@ -1,6 +1,5 @@
 #include "jobs/worker_process.hpp"
 
-#include <malloc.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -16,6 +15,7 @@
 #include <utility>
 
 #include "tubebin/core/error.hpp"
+#include "tubebin/core/memory.hpp"
 
 namespace tubebin::jobs {
 namespace {
@@ -39,14 +39,6 @@ void send_answer(int socket, WorkerAnswer::Kind kind, std::string text) {
   for (; kind == WorkerAnswer::Kind::succeeded && text.size() > kLongestText; text.erase(0, kLongestText))
     send_message(socket, kPart, text.substr(0, kLongestText));
   send_message(socket, static_cast<char>(kind), text.substr(0, kLongestText));
-}
-
-/// Clouds of megabytes come and go with every job. glibc would give their pages back each time, and clearing new ones
-/// costs as much as filling them.
-void keep_memory() {
-  constexpr int kLargestThreshold = 32 << 20;  // bytes; glibc takes no larger one
-  mallopt(M_MMAP_THRESHOLD, kLargestThreshold);
-  mallopt(M_TRIM_THRESHOLD, 8 * kLargestThreshold);
 }
 
 /// Attempts one by one; the end of each that succeeded beside the next one.

@@ -17,6 +17,7 @@
 #include "modeling/input/bin_finding.hpp"
 #include "modeling/input/bin_pose.hpp"
 #include "modeling/input/grid_viewpoint.hpp"
+#include "modeling/input/hanging_tubes.hpp"
 #include "modeling/input/normals.hpp"
 #include "modeling/joining/branch_joining.hpp"
 #include "modeling/joining/tube_joining.hpp"
@@ -112,34 +113,44 @@ std::vector<cloud::Point> without_zero_points(std::span<const cloud::Point> poin
   return measured;
 }
 
-/// Whether the foreground has more than tubes that hang over the walls: points farther from the bin's sides than half its
-/// height.
-bool has_surroundings(const ModelingInput& input, const Background& background) {
-  const Pose bin_from_world = input.world_from_bin.inverse();
-  const double reach = input.bin->height / 2.0 + input.bin->wall_thickness;
-  const Eigen::Array2d half(input.bin->length / 2.0 + reach, input.bin->width / 2.0 + reach);
-  const auto is_outside = [&](std::uint32_t i) {
-    const Vec3 p = bin_from_world * input.points[i].cast<double>();
-    return (p.head<2>().array().abs() > half).any();
-  };
-  return 50 * std::ranges::count_if(background.foreground, is_outside) > std::ssize(background.foreground);
+/// Whether the foreground has more than tubes that hang over the walls: points farther from the bin than half its height.
+bool has_surroundings(const ModelingInput& input, const Background& of_bin) {
+  return 50 * beside_bin(input, of_bin.foreground, input.bin->height / 2.0).size() > of_bin.foreground.size();
 }
 
-/// The background of a known bin; with other things around it, also what is flat of these, and the rest proves that it is
-/// tubes.
+/// Moves points that were set aside.
+void move_to_foreground(const std::vector<std::uint32_t>& indices, Background& background) {
+  std::vector<std::uint32_t> foreground, set_aside;
+  std::ranges::set_union(background.foreground, indices, std::back_inserter(foreground));
+  std::ranges::set_difference(background.set_aside, indices, std::back_inserter(set_aside));
+  background.foreground = std::move(foreground);
+  background.set_aside = std::move(set_aside);
+}
+
+/// All of the background, and what of the foreground is none of `of_bin`'s.
+Background without_surroundings(Background background, const Background& of_bin) {
+  std::vector<std::uint32_t> foreground, around;
+  std::ranges::set_intersection(background.foreground, of_bin.foreground, std::back_inserter(foreground));
+  std::ranges::set_difference(background.foreground, foreground, std::back_inserter(around));
+  std::ranges::move(around, std::back_inserter(background.set_aside));
+  std::ranges::sort(background.set_aside);
+  background.foreground = std::move(foreground);
+  return background;
+}
+
+/// The background of a known bin, over whose walls tubes may hang; with other things around it, also what is flat of these,
+/// and the rest proves that it is tubes.
 Background background_around_bin(const ModelingInput& input, const ViewProjection& projection,
                                  const FilteringOptions& options) {
   Background of_bin = background_of_bin(input, options);
-  if (!has_surroundings(input, of_bin)) return of_bin;
+  const bool is_alone = !has_surroundings(input, of_bin);
+  const std::vector<std::uint32_t> beside = beside_bin(input, of_bin.set_aside, options.bin_margin);
+  if (is_alone && beside.empty()) return of_bin;
   Background background = find_background(input, projection);
-  std::vector<std::uint32_t> foreground;
-  std::ranges::set_intersection(background.foreground, of_bin.foreground, std::back_inserter(foreground));
-  std::vector<std::uint32_t> set_aside = std::move(background.set_aside);
-  std::ranges::set_difference(background.foreground, foreground, std::back_inserter(set_aside));
-  std::ranges::sort(set_aside);
-  background.foreground = std::move(foreground);
-  background.set_aside = std::move(set_aside);
-  return background;
+  std::vector<std::uint32_t> not_flat;
+  std::ranges::set_intersection(beside, background.foreground, std::back_inserter(not_flat));
+  move_to_foreground(hanging_over(input.points, of_bin.foreground, not_flat, background.spacing), of_bin);
+  return is_alone ? of_bin : without_surroundings(std::move(background), of_bin);
 }
 
 /// A known bin's floor and walls are background where the cloud shows them; a bin that it shows elsewhere is moved there,

@@ -62,8 +62,4 @@ std::vector<std::uint32_t> crop_bin(const ModelingInput& input, const FilteringO
 std::vector<std::uint32_t> downsample(std::span<const cloud::Point> points, std::vector<std::uint32_t> indices,
                                       double ratio, std::uint64_t seed);
 
-/// Drops points with fewer than a third of the neighbours that their surroundings let expect.
-std::vector<std::uint32_t> remove_outliers(const ViewProjection& projection, std::span<const cloud::Point> points,
-                                           const std::vector<std::uint32_t>& indices);
-
 }  // namespace tubebin::modeling

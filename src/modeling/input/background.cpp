@@ -60,6 +60,19 @@ Background background_of_bin(const ModelingInput& input, const FilteringOptions&
   return background;
 }
 
+std::vector<std::uint32_t> beside_bin(const ModelingInput& input, const std::vector<std::uint32_t>& indices,
+                                      double margin) {
+  const Pose bin_from_world = input.world_from_bin.inverse();
+  const scene::Box bounds = scene::bin_bounds(*input.bin);
+  const Eigen::Array2d low = bounds.min().head<2>().array() - margin, high = bounds.max().head<2>().array() + margin;
+  std::vector<std::uint32_t> beside;
+  for (const std::uint32_t i : indices) {
+    const Eigen::Array2d p = (bin_from_world * input.points[i].cast<double>()).head<2>().array();
+    if ((p < low).any() || (p > high).any()) beside.push_back(i);
+  }
+  return beside;
+}
+
 std::vector<FlatRegion> solids_of(const Background& background) {
   std::vector<FlatRegion> solids;
   std::ranges::copy_if(background.regions, std::back_inserter(solids), &FlatRegion::is_solid);

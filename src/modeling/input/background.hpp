@@ -26,6 +26,10 @@ Background find_background(const ModelingInput& input, const ViewProjection& pro
 /// As the known bin has it (crop_bin), without looking for regions.
 Background background_of_bin(const ModelingInput& input, const FilteringOptions& options);
 
+/// Those of the points that are farther than `margin` (metres) from the known bin, seen from above.
+std::vector<std::uint32_t> beside_bin(const ModelingInput& input, const std::vector<std::uint32_t>& indices,
+                                      double margin);
+
 /// Regions with nothing behind them.
 std::vector<FlatRegion> solids_of(const Background& background);
 

@@ -20,6 +20,21 @@ std::uint64_t position_key(const cloud::Point& point, std::uint64_t seed) {
   return derive_seed({seed, (std::uint64_t{x} << 32) | y, z});
 }
 
+/// Drops points with fewer than a third of the neighbours that their surroundings let expect.
+std::vector<std::uint32_t> remove_outliers(const ModelingInput& input, const ViewProjection& projection,
+                                           const std::vector<std::uint32_t>& indices) {
+  std::vector<cloud::Point> selected;
+  for (const std::uint32_t i : indices) selected.push_back(input.points[i]);
+  const double reach = 3.0 * spacing_of(views_of(input, projection, indices));
+  const std::vector<int> counts = count_neighbors(projection, selected, reach);
+  // Within three spacings lie some 28 points of a surface, half of them at its edges.
+  constexpr int kLeast = 9;
+  std::vector<std::uint32_t> kept;
+  for (std::size_t k = 0; k < indices.size(); ++k)
+    if (counts[k] >= kLeast) kept.push_back(indices[k]);
+  return kept;
+}
+
 }  // namespace
 
 void describe(Fields& fields, FilteringOptions& options) {
@@ -65,20 +80,6 @@ std::vector<std::uint32_t> downsample(std::span<const cloud::Point> points, std:
   for (const auto& [key, i] : keyed) indices.push_back(i);
   std::sort(indices.begin(), indices.end());
   return indices;
-}
-
-std::vector<std::uint32_t> remove_outliers(const ModelingInput& input, const ViewProjection& projection,
-                                           const std::vector<std::uint32_t>& indices) {
-  std::vector<cloud::Point> selected;
-  for (const std::uint32_t i : indices) selected.push_back(input.points[i]);
-  const double reach = 3.0 * spacing_of(views_of(input, projection, indices));
-  const std::vector<int> counts = count_neighbors(projection, selected, reach);
-  // Within three spacings lie some 28 points of a surface, half of them at its edges.
-  constexpr int kLeast = 9;
-  std::vector<std::uint32_t> kept;
-  for (std::size_t k = 0; k < indices.size(); ++k)
-    if (counts[k] >= kLeast) kept.push_back(indices[k]);
-  return kept;
 }
 
 double normal_radius(double spacing, double radius) {

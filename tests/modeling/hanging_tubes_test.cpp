@@ -1,0 +1,46 @@
+#include "modeling/input/hanging_tubes.hpp"
+
+#include <gtest/gtest.h>
+
+#include "modeling/built_scene.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+TEST(HangingTubes, AreWhatHangsTogetherWithTheInsideOfTheBin) {
+  constexpr double kSpacing = 0.001;
+  std::vector<cloud::Point> points;
+  std::vector<std::uint32_t> inside, beside;
+  const auto add_line = [&](float from, float to, float y) {
+    for (float x = from; x < to; x += 0.001f) {
+      (x < 0.2f ? inside : beside).push_back(static_cast<std::uint32_t>(points.size()));
+      points.emplace_back(x, y, 0.25f);
+    }
+  };
+  add_line(0.1f, 0.3f, 0.0f);  // over the wall
+  const std::size_t hanging = beside.size();
+  add_line(0.25f, 0.3f, 0.05f);  // beside it
+  EXPECT_EQ(hanging_over(points, inside, beside, kSpacing),
+            std::vector<std::uint32_t>(beside.begin(), beside.begin() + static_cast<std::ptrdiff_t>(hanging)));
+  EXPECT_TRUE(hanging_over(points, {}, beside, kSpacing).empty());
+}
+
+/// It leans over the wall, and its end is far below the rim.
+TEST(HangingTubes, AreFoundWholeWithAKnownBin) {
+  const scene::Bin bin;
+  const double wall = bin.length / 2.0 + bin.wall_thickness;
+  const scene::Scene scene =
+      scene_of({tube_along({{0.0, 0.0, 0.1}, {wall - 0.05, 0.0, 0.25}, {wall + 0.15, 0.0, 0.05}}),
+                tube_along({{-0.2, -0.1, kRadius}, {0.2, -0.1, kRadius}})});
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
+  ModelingOptions options = known_radius();
+  options.label_all = true;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), options);
+  ASSERT_EQ(result.tubes.size(), 2u);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.labels[i] == 1) EXPECT_NE(result.all_labels[i], 0u) << cloud.points[i].transpose();
+  EXPECT_EQ(micro_recall_of(result, cloud), 1.0);
+}
+
+}  // namespace
+}  // namespace tubebin::modeling
