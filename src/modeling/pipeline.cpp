@@ -204,6 +204,12 @@ void label_rim(const BinFound& bin, const std::vector<cloud::Point>& points, con
   for (std::size_t k = 0; k < places.size(); ++k) result.labels[places[k]] = labels[k];
 }
 
+/// Outliers and others that lie alone make a foreground's points seem farther apart than they lie in all of the scan (both
+/// metres; 0: unknown). At the edges of thin tubes they seem so by a seventh.
+double spacing_without_lone_points(double of_foreground, double of_scan) {
+  return of_scan > 0.0 ? std::min(of_foreground, 1.25 * of_scan) : of_foreground;
+}
+
 /// A scene after step 1.
 struct FilteredScene {
   std::vector<cloud::Point> measured;  ///< that `input` views; none: it views the points that were told
@@ -232,6 +238,7 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
                         : find_bin(background, found.up, input.points);
   crop(background, input, options);
   FilteredCloud cloud = filter(input, projection, background.foreground, options.filtering, options.seed);
+  cloud.spacing = spacing_without_lone_points(cloud.spacing, background.spacing / std::sqrt(options.filtering.ratio));
   return {std::move(measured), std::move(input), std::move(found), projection, std::move(background), std::move(cloud)};
 }
 

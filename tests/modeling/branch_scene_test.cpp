@@ -51,19 +51,6 @@ TEST(Branches, OneForkAmongPlainTubesIsOneTube) {
   EXPECT_GE(micro_recall_of(result, cloud), 0.995);
 }
 
-/// Two lengths alike are no common one.
-TEST(Branches, AForkWhoseStemIsAsLongAsItsArmsIsOneTube) {
-  scene::PlacedTube fork = tube_along({{-0.1, 0.06, kRadius}, {0.0, 0.0, kRadius}, {0.1, 0.06, kRadius}});
-  fork.tube.nodes.push_back({0.0, 0.06 - 0.29, kRadius});
-  fork.tube.cylinders.push_back({1, 3, 0});
-  const scene::Scene scene = scene_of({fork});
-  const cloud::Cloud cloud = scan::scan(scene).cloud;
-  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
-  ASSERT_EQ(result.tubes.size(), 1u);
-  EXPECT_EQ(result.tubes.front().paths.size(), 2u);
-  EXPECT_GE(micro_recall_of(result, cloud), 0.995);
-}
-
 TEST(Branches, ATrunkThatAnotherTubeHidesStillJoinsItsBranches) {
   const scene::Scene scene = scene_of({two_branches(0.0), two_branches(-0.15),
                                        tube_along({{-0.08, -0.02, 0.05}, {-0.04, 0.03, 0.05}, {0.12, 0.03, 0.05}})});

@@ -37,8 +37,9 @@ TEST(HangingTubes, AreFoundWholeWithAKnownBin) {
   options.label_all = true;
   const ModelingResult result = model_tubes(input_of(cloud, scene.bin), options);
   ASSERT_EQ(result.tubes.size(), 2u);
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.labels[i] == 1) EXPECT_NE(result.all_labels[i], 0u) << cloud.points[i].transpose();
+  std::size_t missed = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) missed += cloud.labels[i] == 1 && result.all_labels[i] == 0;
+  EXPECT_EQ(missed, 0u);
   EXPECT_EQ(micro_recall_of(result, cloud), 1.0);
 }
 
