@@ -57,6 +57,17 @@ TEST_F(BranchJoining, OnlyASureBranchMakesATubeLongerThanALengthThatRecurs) {
   EXPECT_EQ(tubes_beside(tree(0.0, 0.5 * kRadius), 3), 1u);
 }
 
+TEST_F(BranchJoining, AmongTubesOfAFewLengthsASingleBranchThatIsNotSureIsNone) {
+  const auto tubes_of = [&](double start, double length_beside) {
+    std::vector<TubePath> paths = tree(0.0, start);
+    paths.push_back(path({{-0.15, -0.3, 0}, {length_beside - 0.15, -0.3, 0}}));
+    return join_likely_branches(paths, kRadius, occlusion(), 0.0).size();
+  };
+  EXPECT_EQ(tubes_of(2.0 * kRadius, 0.3), 3u);   // starts under the lid, and the trunk is as long as the tube beside it
+  EXPECT_EQ(tubes_of(2.0 * kRadius, 0.25), 2u);  // of no length that is shared
+  EXPECT_EQ(tubes_of(0.5 * kRadius, 0.3), 2u);   // sure
+}
+
 TEST_F(BranchJoining, ABranchThatWasFollowedBeyondItsTrunkIsCutBackToIt) {
   for (const auto join : {join_branches, join_likely_branches}) {
     const auto tubes = join(tree(0.3, -1.5 * kRadius), kRadius, occlusion(), 0.0);

@@ -122,7 +122,8 @@ TEST(Chains, HaveTheBestCoverAmongThem) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     RandomPieces random(seed);
     const PieceGraph graph(random.pieces, random.ends, random.joins);
-    const LengthModel lengths{.radius = kThickness, .common = seed % 2 == 0 ? 0.5 : 0.0};
+    const LengthModel lengths{.radius = kThickness,
+                              .common = seed % 2 == 0 ? std::vector<double>{0.5} : std::vector<double>{}};
     double least = std::numeric_limits<double>::infinity();
     for (unsigned subset = 0; subset < 1U << kJoins; ++subset)
       if (const auto cost = Joined(graph, lengths, subset).cost()) least = std::min(least, *cost);
@@ -141,7 +142,7 @@ TEST(Chains, HaveTheBestCoverAmongThem) {
 }
 
 TEST(LengthModel, CountsWhatIsMissingBeyondTheRoomForIt) {
-  const LengthModel lengths{.radius = kThickness, .common = 0.5};
+  const LengthModel lengths{.radius = kThickness, .common = {0.5}};
   EXPECT_EQ(lengths.cost(0.5, 0.0, 0.0, false), 0.0);
   EXPECT_EQ(lengths.cost(0.4, 0.0, 0.1, false), 0.0);
   EXPECT_NEAR(lengths.cost(0.39, 0.0, 0.105, false), 2.0, 1e-9);  // two standard deviations of a quarter of a radius
@@ -155,12 +156,32 @@ TEST(LengthModel, CountsWhatIsMissingBeyondTheRoomForIt) {
 /// A normal density of a quarter of a radius about 0.5 m, and one over 0.5 m for how far a hidden end lies, against one over
 /// 0.8 m.
 TEST(LengthModel, FavorsTheCommonLengthByTheRatioOfDensities) {
-  const LengthModel lengths{.radius = kThickness, .common = 0.5, .longest_likely = 0.8};
+  const LengthModel lengths{.radius = kThickness, .common = {0.5}, .longest_likely = 0.8};
   const double density = 1.0 / (std::sqrt(2.0 * std::numbers::pi) * kThickness / 4.0);
   EXPECT_NEAR(lengths.gain(0.5, 0.0, 0.0), std::log(density / (1.0 / 0.8)), 1e-9);
   EXPECT_NEAR(lengths.gain(0.4, 0.0, 0.2), std::log(0.8 / 0.5), 1e-9);
   EXPECT_EQ(lengths.gain(0.4, 0.0, 0.05), 0.0);
   EXPECT_EQ(lengths.gain(0.6, 0.0, 0.2), 0.0);
+}
+
+TEST(LengthModel, OfSeveralLengthsTheOneThatSuitsCounts) {
+  const LengthModel lengths{.radius = kThickness, .common = {0.3, 0.5}, .longest_likely = 0.8};
+  const LengthModel one{.radius = kThickness, .common = {0.5}, .longest_likely = 0.8};
+  EXPECT_EQ(lengths.cost(0.3, 0.0, 0.0, false), 0.0);
+  EXPECT_GT(one.cost(0.3, 0.0, 0.0, false), 5.0);
+  EXPECT_GT(lengths.cost(0.4, 0.0, 0.0, false), 5.0);
+  EXPECT_EQ(lengths.longest(), one.longest());
+  // Which of the two it has is one more thing to tell, and the second length itself could be any.
+  EXPECT_NEAR(lengths.gain(0.5, 0.0, 0.0), one.gain(0.5, 0.0, 0.0) - std::log(2.0), 1e-12);
+  EXPECT_NEAR(lengths.cost_of_further_lengths(), one.gain(0.5, 0.0, 0.0), 1e-12);
+  EXPECT_EQ(one.cost_of_further_lengths(), 0.0);
+}
+
+TEST(LengthModel, RecurringLengthsAreSharedByTwoTubesOrMore) {
+  const LengthModel lengths{.radius = kThickness};
+  EXPECT_EQ(lengths.recurring({0.5, 0.3, 0.5, 0.41, 0.3}), (std::vector<double>{0.3, 0.5}));
+  EXPECT_TRUE(lengths.recurring({0.5, 0.5, 0.41, 0.3}).empty());  // a single one
+  EXPECT_TRUE(lengths.recurring({}).empty());
 }
 
 TEST(LengthModel, TriesTheLengthOfMostTubeFirst) {

@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "modeling/fitting/vote_voxels.hpp"
+#include "modeling/joining/branch_cutting.hpp"
 #include "modeling/joining/branch_links.hpp"
 #include "modeling/joining/cover_margins.hpp"
 #include "tubebin/core/random.hpp"
@@ -129,8 +130,11 @@ class TreeJoiner {
     trees_.clear();
     tree_of_key_.clear();
     for (const Tree& tree : singles_) grow(tree, search.trees_per_path);
-    std::vector<PathCandidate> candidates;
-    for (const Tree& tree : trees_) candidates.push_back({.items = tree.paths, .cost = tree.cost});
+    std::vector<PathCandidate> candidates(trees_.size());
+    for (std::size_t t = 0; t < trees_.size(); ++t) {
+      candidates[t].items = trees_[t].paths;
+      candidates[t].cost = trees_[t].cost;
+    }
     PathCover cover = cheapest_path_cover(singles_.size(), candidates, {}, search.cover_nodes);
     return {.possible = std::move(trees_), .candidates = std::move(candidates), .cover = std::move(cover)};
   }
@@ -291,43 +295,29 @@ double recurring_length(const std::vector<TubePiece>& paths) {
   return std::numeric_limits<double>::infinity();
 }
 
+/// Whether another path is as long, to a radius.
+bool shares_length(const TubePiece& path, const std::vector<TubePiece>& paths) {
+  const auto is_as_long = [&](const TubePiece& other) {
+    return std::abs(other.length() - path.length()) <= path.radius;
+  };
+  return std::ranges::count_if(paths, is_as_long) > 1;
+}
+
+/// Whether nine tenths of what is seen from end to end are paths that share their lengths: the scene's tubes are of a few.
+bool are_of_few_lengths(const std::vector<TubePiece>& paths, const std::vector<PieceEnd>& ends) {
+  double seen = 0.0, shared = 0.0;
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    if (ends[2 * k].seen_free < 0.5 || ends[2 * k + 1].seen_free < 0.5) continue;
+    seen += paths[k].length();
+    if (shares_length(paths[k], paths)) shared += paths[k].length();
+  }
+  return shared > 0.0 && shared >= 0.9 * seen;
+}
+
 /// The likeliest link of each path: a branch starts at one of its ends.
 void keep_one_of_each_branch(std::vector<BranchLink>& links) {
   std::set<std::uint32_t> branches;
   std::erase_if(links, [&](const BranchLink& link) { return !branches.insert(link.end / 2).second; });
-}
-
-/// Cuts the path's last end back to where it runs through another one, clear of that one's ends, within its last two radii:
-/// no tube does, so it is a branch that was followed beyond its start.
-void cut_end_beyond(const std::vector<Vec3>& other, double radius, TubePath& path) {
-  double left = 2.0 * radius;
-  if (distance_to_polyline(path.nodes.back(), other) > left + radius / 2.0) return;
-  for (std::size_t k = path.nodes.size() - 1; k > 0 && left > 0.0 && !path.bridged[k - 1]; --k) {
-    const Vec3 back = path.nodes[k - 1] - path.nodes[k];
-    const double length = std::min(back.norm(), left);
-    for (double at = 0.0; at < length; at += radius / 8.0) {
-      const Vec3 here = path.nodes[k] + at * back.normalized(), place = nearest_on_polyline(here, other);
-      if ((place - here).norm() > radius / 2.0 || (place - other.front()).norm() <= radius ||
-          (place - other.back()).norm() <= radius)
-        continue;
-      path.nodes.resize(k + 1);
-      path.bridged.resize(k);
-      path.nodes.back() = here;
-      return;
-    }
-    left -= length;
-  }
-}
-
-void cut_ends_beyond_others(std::vector<TubePath>& paths, double radius) {
-  for (std::size_t k = 0; k < paths.size(); ++k)
-    for (int end = 0; end < 2; ++end) {
-      for (std::size_t other = 0; other < paths.size(); ++other)
-        if (other != k) cut_end_beyond(paths[other].nodes, radius, paths[k]);
-      std::reverse(paths[k].nodes.begin(), paths[k].nodes.end());
-      std::reverse(paths[k].bridged.begin(), paths[k].bridged.end());
-      std::reverse(paths[k].bridge_odds.begin(), paths[k].bridge_odds.end());
-    }
 }
 
 std::vector<TubePiece> pieces_of(const std::vector<TubePath>& paths, double radius) {
@@ -360,18 +350,24 @@ std::vector<TubeModel> join_likely_branches(std::vector<TubePath> paths, double 
   cut_ends_beyond_others(paths, radius);
   const std::vector<TubePiece> pieces = pieces_of(paths, radius);
   const double whole = tube_length > 0.0 ? tube_length : recurring_length(pieces);
+  std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion, 40.0 * radius);
+  std::vector<BranchLink> links = find_branch_links(pieces, ends, occlusion, 0.0);
   const auto is_whole = [&](const TubePiece& path) { return std::abs(path.length() - whole) <= radius; };
   const auto is_no_branch = [&](const BranchLink& link) {
     const TubePiece &branch = pieces[link.end / 2], &trunk = pieces[link.other];
     return link.other_end || link.cost >= 0.0 || !is_long(branch) || is_whole(branch) || is_whole(trunk) ||
            ((tube_length > 0.0 || link.cost > kOnSideCost) && branch.length() + trunk.length() > whole + 2.0 * radius);
   };
-  std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion, 40.0 * radius);
-  std::vector<BranchLink> links = find_branch_links(pieces, ends, occlusion, 0.0);
   for (BranchLink& link : links) link.cost += kUnfittedCost * link.in_view;
   std::ranges::sort(links, {}, &BranchLink::cost);
   std::erase_if(links, is_no_branch);
   keep_one_of_each_branch(links);
+  // Among tubes of a few lengths, a single one that is not sure is as likely chance.
+  const auto is_chance = [&](const BranchLink& link) {
+    return link.cost > kOnSideCost &&
+           (shares_length(pieces[link.end / 2], pieces) || shares_length(pieces[link.other], pieces));
+  };
+  if (links.size() == 1 && is_chance(links.front()) && are_of_few_lengths(pieces, ends)) links.clear();
   const TreeJoiner joiner(pieces, std::move(ends), std::move(links), radius);
   std::vector<TubeModel> tubes;
   for (Tree& tree : joiner.likely_trees(0.0)) {

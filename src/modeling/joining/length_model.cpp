@@ -26,13 +26,18 @@ double LengthModel::sigma(double bridged) const {
 }
 
 double LengthModel::longest() const {
-  const double length = common > 0.0 ? common : longest_likely;
+  const double length = common.empty() ? longest_likely : std::ranges::max(common);
   return length + 5.0 * sigma(length / 4.0);
 }
 
 double LengthModel::cost(double length, double bridged, double room, bool may_be_chance) const {
-  if (common <= 0.0) return 0.0;
-  const double missing = common - length;
+  double least = common.empty() ? 0.0 : std::numeric_limits<double>::infinity();
+  for (const double one : common) least = std::min(least, cost_beside(one, length, bridged, room, may_be_chance));
+  return least;
+}
+
+double LengthModel::cost_beside(double one, double length, double bridged, double room, bool may_be_chance) const {
+  const double missing = one - length;
   const double unexplained = missing < 0.0 ? missing : std::max(missing - room, 0.0);
   double limit = kLengthCostLimit;
   if (missing >= 0.0 && room > 0.0) limit = kHiddenLengthCostLimit;
@@ -41,11 +46,23 @@ double LengthModel::cost(double length, double bridged, double room, bool may_be
 }
 
 double LengthModel::gain(double length, double bridged, double room) const {
-  if (common <= 0.0) return 0.0;
-  const double any = std::max(longest_likely, common);
-  if (std::abs(length - common) <= 2.0 * sigma(bridged))
+  double most = 0.0;
+  for (const double one : common)
+    most = std::max(most, gain_beside(one, length, bridged, room) - std::log(static_cast<double>(common.size())));
+  return most;
+}
+
+double LengthModel::gain_beside(double one, double length, double bridged, double room) const {
+  const double any = std::max(longest_likely, one);
+  if (std::abs(length - one) <= 2.0 * sigma(bridged))
     return std::log(any / (std::sqrt(2.0 * std::numbers::pi) * sigma(bridged)));
-  return length < common && common < length + room ? std::log(any / common) : 0.0;
+  return length < one && one < length + room ? std::log(any / one) : 0.0;
+}
+
+double LengthModel::cost_of_further_lengths() const {
+  double cost = 0.0;
+  for (std::size_t k = 1; k < common.size(); ++k) cost += gain_beside(common[k], common[k], 0.0, 0.0);
+  return cost;
 }
 
 std::vector<double> LengthModel::possible_common(std::vector<double> seen) const {
@@ -65,6 +82,17 @@ std::vector<double> LengthModel::possible_common(std::vector<double> seen) const
     if (std::find(lengths.begin(), lengths.end(), length) == lengths.end()) lengths.push_back(length);
   }
   return lengths;
+}
+
+std::vector<double> LengthModel::recurring(std::vector<double> seen) const {
+  std::sort(seen.begin(), seen.end());
+  const double tolerance = 4.0 * sigma(0.0);
+  std::vector<double> lengths;
+  for (std::size_t first = 0, last = 0; first < seen.size(); first = last) {
+    while (last < seen.size() && seen[last] <= seen[first] + tolerance) ++last;
+    if (last - first > 1) lengths.push_back(seen[first + (last - first) / 2]);
+  }
+  return lengths.size() > 1 && lengths.size() <= kPossibleLengths ? lengths : std::vector<double>{};
 }
 
 }  // namespace tubebin::modeling

@@ -53,7 +53,7 @@ class JoinSearch {
   /// them against branches.
   double cost_limit(const LengthModel& lengths) const {
     if (tubes_branch_) return kClearJoinCost;
-    if (lengths.common > 0.0) return kJoinCostLimit;
+    if (!lengths.common.empty()) return kJoinCostLimit;
     return std::isfinite(lengths.longest_likely) ? 2.0 * kHiddenEndCost : 0.0;
   }
 
@@ -85,7 +85,7 @@ Cover cheapest_cover(PieceGraph graph, const LengthModel& lengths) {
 
 /// What speaks against the cover, nats.
 double cost_of(const Cover& cover) {
-  double cost = 0.0;
+  double cost = cover.lengths.cost_of_further_lengths();
   for (const Chain& chain : cover.chains) {
     cost += chain.path.cost;
     cost -= cover.lengths.gain(chain.length, chain.bridged, chain.room);
@@ -110,16 +110,19 @@ Cover with_longest_length(const Cover& likely, const JoinSearch& search) {
   return cheapest_cover(search.graph(lengths), lengths);
 }
 
-/// Once the tubes' common length is known, joins that complete a tube are likelier and those that exceed it ruled out.
-/// They have one where it explains the scan better than tubes of any length do.
+/// Once the tubes' common length is known, or the few that they have, joins that complete a tube are likelier and those that
+/// exceed it ruled out. They have one where it explains the scan better than tubes of any length do.
 Cover with_common_length(Cover best, const JoinSearch& search) {
   LengthModel lengths = best.lengths;
-  const std::vector<double> possible = lengths.possible_common(seen_lengths(best));
+  const std::vector<double> seen = seen_lengths(best), possible = lengths.possible_common(seen);
   if (possible.empty()) return best;
-  lengths.common = std::ranges::max(possible);
+  lengths.common = possible;
   const PieceGraph graph = search.graph(lengths);  // of the longest, and so of the others too
-  for (const double length : possible) {
-    lengths.common = length;
+  std::vector<std::vector<double>> sets;
+  for (const double length : possible) sets.push_back({length});
+  if (const std::vector<double> recurring = lengths.recurring(seen); !recurring.empty()) sets.push_back(recurring);
+  for (const std::vector<double>& set : sets) {
+    lengths.common = set;
     Cover cover = cheapest_cover(graph, lengths);
     if (cost_of(cover) < cost_of(best)) best = std::move(cover);
   }
@@ -174,7 +177,8 @@ Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& o
                     bool tries_shape) {
   if (pieces.empty()) return {.paths = {}, .tube_length = tube_length, .tubes_branch = false};
   const JoinSearch search(pieces, occlusion);
-  const LengthModel lengths{.radius = pieces.front().radius, .common = tube_length};
+  LengthModel lengths{.radius = pieces.front().radius};
+  if (tube_length > 0.0) lengths.common = {tube_length};
   Cover cover = cheapest_cover(search.graph(lengths), lengths);
   // Where tubes branch, chains are parts of them.
   if (tube_length <= 0.0 && !search.tubes_branch())
@@ -183,7 +187,10 @@ Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& o
     if (auto alike = with_common_shape(cover, pieces, occlusion))
       return with_rest(std::move(*alike), occlusion, tube_length);
   }
-  return {.paths = paths_of(cover), .tube_length = cover.lengths.common, .tubes_branch = search.tubes_branch()};
+  const std::vector<double>& common = cover.lengths.common;
+  return {.paths = paths_of(cover),
+          .tube_length = common.size() == 1 ? common.front() : 0.0,
+          .tubes_branch = search.tubes_branch()};
 }
 
 Joining join_pieces_by_shapes(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion,
