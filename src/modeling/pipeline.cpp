@@ -146,10 +146,12 @@ Background background_around_bin(const ModelingInput& input, const ViewProjectio
   const bool is_alone = !has_surroundings(input, of_bin);
   const std::vector<std::uint32_t> beside = beside_bin(input, of_bin.set_aside, options.bin_margin);
   if (is_alone && beside.empty()) return of_bin;
-  Background background = find_background(input, projection);
+  Background background = is_alone ? find_background(input, projection, beside) : find_background(input, projection);
   std::vector<std::uint32_t> not_flat;
   std::ranges::set_intersection(beside, background.foreground, std::back_inserter(not_flat));
-  move_to_foreground(hanging_over(input.points, of_bin.foreground, not_flat, background.spacing), of_bin);
+  // What is over the walls leads over them.
+  const std::vector<std::uint32_t> over_walls = beside_bin(input, of_bin.foreground, -input.bin->wall_thickness);
+  move_to_foreground(hanging_over(input.points, over_walls, not_flat, background.spacing), of_bin);
   return is_alone ? of_bin : without_surroundings(std::move(background), of_bin);
 }
 

@@ -7,20 +7,20 @@
 namespace tubebin::modeling {
 namespace {
 
-TEST(HangingTubes, AreWhatHangsTogetherWithTheInsideOfTheBin) {
+TEST(HangingTubes, AreWhatHangsTogetherWithWhatIsOverTheWalls) {
   constexpr double kSpacing = 0.001;
   std::vector<cloud::Point> points;
-  std::vector<std::uint32_t> inside, beside;
+  std::vector<std::uint32_t> walls, beside;
   const auto add_line = [&](float from, float to, float y) {
     for (float x = from; x < to; x += 0.001f) {
-      (x < 0.2f ? inside : beside).push_back(static_cast<std::uint32_t>(points.size()));
+      (x < 0.2f ? walls : beside).push_back(static_cast<std::uint32_t>(points.size()));
       points.emplace_back(x, y, 0.25f);
     }
   };
   add_line(0.1f, 0.3f, 0.0f);  // over the wall
   const std::size_t hanging = beside.size();
   add_line(0.25f, 0.3f, 0.05f);  // beside it
-  EXPECT_EQ(hanging_over(points, inside, beside, kSpacing),
+  EXPECT_EQ(hanging_over(points, walls, beside, kSpacing),
             std::vector<std::uint32_t>(beside.begin(), beside.begin() + static_cast<std::ptrdiff_t>(hanging)));
   EXPECT_TRUE(hanging_over(points, {}, beside, kSpacing).empty());
 }

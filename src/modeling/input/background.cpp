@@ -27,10 +27,15 @@ bool is_solid(const FlatRegion& region, std::span<const cloud::Point> points, do
 }  // namespace
 
 Background find_background(const ModelingInput& input, const ViewProjection& projection) {
-  Background background;
   std::vector<std::uint32_t> finite;
   for (std::uint32_t i = 0; i < input.points.size(); ++i)
     if (cloud::is_finite(input.points[i])) finite.push_back(i);
+  return find_background(input, projection, finite);
+}
+
+Background find_background(const ModelingInput& input, const ViewProjection& projection,
+                           const std::vector<std::uint32_t>& finite) {
+  Background background;
   const std::vector<SourceView> views = views_of(input, projection, finite);
   background.spacing = spacing_of(views);
   for (const SourceView& view : views)

@@ -23,6 +23,10 @@ struct Background {
 /// too: a narrow strip of the tube.
 Background find_background(const ModelingInput& input, const ViewProjection& projection);
 
+/// The same of a part of the points alone: `finite` are the indices of points that are.
+Background find_background(const ModelingInput& input, const ViewProjection& projection,
+                           const std::vector<std::uint32_t>& finite);
+
 /// As the known bin has it (crop_bin), without looking for regions.
 Background background_of_bin(const ModelingInput& input, const FilteringOptions& options);
 
