@@ -214,26 +214,6 @@ TEST(Pipeline, TheSeedGivesTheSameResultAgain) {
   }
 }
 
-TEST(Pipeline, PointsThatLieAloneMakeTheOthersSeemNoFartherApart) {
-  const scene::Scene scene = scene_of({tube_along({{-0.15, -0.05, kRadius}, {0.15, -0.05, kRadius}}),
-                                       tube_along({{-0.15, 0.05, kRadius}, {0.15, 0.05, kRadius}})});
-  cloud::Cloud cloud = scan::scan(scene).cloud;
-  const auto model = [&] {
-    ModelingInput input;
-    input.points = cloud.points;
-    input.world_from_sensor = cloud.world_from_sensor;
-    return model_tubes(input, known_radius());
-  };
-  const double spacing = model().spacing;
-  Random random(3);
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.labels[i] == 0 && random.uniform(0.0, 1.0) < 0.03)
-      cloud.points[i].z() += static_cast<float>(random.uniform(0.01, 0.05));
-  const ModelingResult result = model();
-  EXPECT_LT(result.spacing, 1.2 * spacing);
-  EXPECT_EQ(result.tubes.size(), 2u);
-}
-
 TEST(Pipeline, TheOrderOfThePointsChangesNoLabel) {
   const scene::Scene scene = one_over_three();
   const cloud::Cloud cloud = scan::scan(scene).cloud;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include "modeling/built_scene.hpp"
 #include "modeling/fitting/piece_evidence.hpp"
 #include "modeling/input/bin_pose.hpp"
 #include "modeling/input/flat_regions.hpp"
@@ -135,6 +136,26 @@ TEST(PieceEvidence, KnowsARadiusFromAnother) {
   const PieceEvidence thicker = evidence_of(strip(0.016, 0.009, false, 0.0001), 0.0125);
   EXPECT_NEAR(thicker.curvature, 0.0125 / 0.016, 0.1);
   EXPECT_FALSE(is_tube(thicker, 0.0125, 0.0001));
+}
+
+TEST(Surroundings, PointsThatLieAloneMakeTheOthersSeemNoFartherApart) {
+  const scene::Scene scene = scene_of({tube_along({{-0.15, -0.05, kRadius}, {0.15, -0.05, kRadius}}),
+                                       tube_along({{-0.15, 0.05, kRadius}, {0.15, 0.05, kRadius}})});
+  cloud::Cloud cloud = scan::scan(scene).cloud;
+  const auto model = [&] {
+    ModelingInput input;
+    input.points = cloud.points;
+    input.world_from_sensor = cloud.world_from_sensor;
+    return model_tubes(input, known_radius());
+  };
+  const double spacing = model().spacing;
+  Random random(3);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.labels[i] == 0 && random.uniform(0.0, 1.0) < 0.03)
+      cloud.points[i].z() += static_cast<float>(random.uniform(0.01, 0.05));
+  const ModelingResult result = model();
+  EXPECT_LT(result.spacing, 1.2 * spacing);
+  EXPECT_EQ(result.tubes.size(), 2u);
 }
 
 /// Floor and two walls of a bin that stands elsewhere than it is said to.
