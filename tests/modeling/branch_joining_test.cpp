@@ -100,7 +100,7 @@ TEST_F(BranchJoining, AKnownLengthDecidesWhatTheLidHides) {
     return join_branches(tree(0.0, 0.038), kRadius, occlusion(), length);
   };
   EXPECT_EQ(tubes_of_length(0.0).size(), 2u);  // not known
-  EXPECT_EQ(tubes_of_length(0.25).size(), 2u);
+  EXPECT_EQ(tubes_of_length(0.3).size(), 2u);
   ASSERT_EQ(tubes_of_length(0.4).size(), 1u);
   EXPECT_NEAR(tubes_of_length(0.4)[0].length(), 0.4, kRadius);
 }

@@ -23,8 +23,8 @@ constexpr double kLinkCostLimit = 9.0;
 /// A tube shorter than it should be can have other reasons than a missed link: e^-10.
 constexpr double kTreeLengthCostLimit = 10.0;
 /// Radii: each path's length is off by as much, where it is led up to another and where it bends out of sight. In set C trees
-/// that are found whole are off by 4.2 radii (standard deviation of 1400).
-constexpr double kLengthScatter = 2.5;
+/// that are found whole are seldom too long (5 % of 1400 by over 1.9 radii), and often too short (5 % by over 10.7).
+constexpr double kExcessScatter = 1.25, kLackScatter = 2.5;
 
 /// -log of how seldom (1 in 8) a branch whose start is in view is not fitted up to the other path's side.
 constexpr double kUnfittedCost = 2.1;
@@ -104,7 +104,7 @@ class TreeJoiner {
     std::sort(lengths.begin(), lengths.end(), std::greater<>());
     std::vector<double> distinct;
     for (const double length : lengths)
-      if (distinct.empty() || distinct.back() - length > length_sigma(1)) distinct.push_back(length);
+      if (distinct.empty() || distinct.back() - length > kExcessScatter * radius_) distinct.push_back(length);
     return distinct;
   }
 
@@ -114,11 +114,11 @@ class TreeJoiner {
     double cost = 0.0, all = 0.0, as_long = 0.0;
     for (const std::uint32_t c : forest.cover.chosen) {
       const Tree& tree = forest.possible[c];
-      const double sigma = length_sigma(tree.paths.size());
       all += tree.length;
       cost += tree.cost;
-      if (std::abs(tree.length - tube_length) > 2.0 * sigma) continue;
+      if (std::abs(lack_in_sigmas(tube_length - tree.length, tree.paths.size())) > 2.0) continue;
       as_long += tree.length;
+      const double sigma = length_sigma((kExcessScatter + kLackScatter) / 2.0, tree.paths.size());
       cost -= std::log(tube_length / (std::sqrt(2.0 * std::numbers::pi) * sigma));
     }
     return as_long >= all / 2.0 ? cost : std::numeric_limits<double>::infinity();
@@ -203,18 +203,24 @@ class TreeJoiner {
     });
   }
 
-  double length_sigma(std::size_t paths) const {
-    return kLengthScatter * radius_ * std::sqrt(static_cast<double>(paths));
+  double length_sigma(double scatter, std::size_t paths) const {
+    return scatter * radius_ * std::sqrt(static_cast<double>(paths));
+  }
+
+  /// How far a tree's length is from the one that is searched for, standard deviations; negative where it exceeds it.
+  double lack_in_sigmas(double missing, std::size_t paths) const {
+    return missing / length_sigma(missing < 0.0 ? kExcessScatter : kLackScatter, paths);
   }
 
   double length_cost(const Tree& tree) const {
-    const double missing = tube_length_ - tree.length, sigma = length_sigma(tree.paths.size());
+    const double missing = tube_length_ - tree.length;
     double room = 0.0;
     for (const std::uint32_t p : tree.paths)
       for (const std::uint32_t end : {2 * p, 2 * p + 1})
         if (!tree.uses(end) && ends_[end].seen_free < 0.5) room += ends_[end].hidden_reach + radius_;
     const double unexplained = missing < 0.0 ? missing : std::max(missing - room, 0.0);
-    return std::min(0.5 * unexplained * unexplained / (sigma * sigma), kTreeLengthCostLimit);
+    const double lack = lack_in_sigmas(unexplained, tree.paths.size());
+    return std::min(0.5 * lack * lack, kTreeLengthCostLimit);
   }
 
   /// A tree and a link that leads from it to a further path.
@@ -255,7 +261,7 @@ class TreeJoiner {
     const BranchLink& link = links_[l];
     const double length = tree.length + link.length + singles_[next].length;
     return !tree.holds(next) && !tree.uses(link.end) && !(link.other_end && tree.uses(*link.other_end)) &&
-           length <= tube_length_ + 4.0 * length_sigma(tree.paths.size() + 1);
+           lack_in_sigmas(tube_length_ - length, tree.paths.size() + 1) >= -4.0;
   }
 
   /// Whether no cheaper tree has the same paths.
