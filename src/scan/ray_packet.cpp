@@ -166,6 +166,10 @@ TUBEBIN_WIDE void RayPacket::offer_bin(const std::vector<SolidBox>& bin, BoxFlag
 TUBEBIN_WIDE bool RayPacket::get_bin_points(const scene::Camera& camera, int column, int row,
                                             const std::vector<SolidBox>& bin, BoxFlags boxes, double depth_min,
                                             double depth_max, std::span<cloud::Point> points) {
+  if (boxes == 0) {  // beside the bin, in the window of tubes that lean out of it
+    std::ranges::fill(points, cloud::Point::Constant(std::numeric_limits<float>::quiet_NaN()));
+    return true;
+  }
   const Eigen::Matrix3d axes = camera.world_from_scanner().linear();
   const Vec3 origin = camera.world_from_scanner().translation();
   const double y = slope_down(camera, row);
