@@ -6,7 +6,6 @@
 #include "dataset/stage_clock.hpp"
 #include "tubebin/cloud/label_colors.hpp"
 #include "tubebin/render/preview.hpp"
-#include "tubebin/scan/scanner.hpp"
 #include "tubebin/scan/visibility.hpp"
 #include "tubebin/scene/depth_image.hpp"
 
@@ -43,20 +42,15 @@ GeneratedScene show_pile(const Piles& piles, const SceneId& id) {
   result.seconds = pile.seconds;
   result.physics = pile.rest.figures;
   StageClock clock(result.seconds);
-  const std::vector<scene::Scanner> scanners = config.all_scanners();
-  const scene::Scene scene{.bin = config.bin,
-                           .scanner = scanners.front(),
-                           .tubes = pile.rest.tubes,
-                           .further_scanners = {scanners.begin() + 1, scanners.end()},
-                           .surroundings = pile.surroundings};
-  scan::MergedScan scanned = scan::scan_from_all(scene, pile.seed);
+  const scene::Scene scene = scene_of(config, pile);
+  scan::MergedScan scanned = scan::scan_from_all(scene, pile.seed, piles.bins_alone);
   clock.end_stage("scan");
   if (!has_point(scanned.cloud)) {
     result.failure = "unseen";
     result.failure_detail = fmt::format(
         "the cloud has no point: from scanner.position, with scanner.rotation_deg, no surface lies between range_min "
         "{} m and range_max {} m in the image",
-        scanners.front().range_min, scanners.front().range_max);
+        scene.scanner.range_min, scene.scanner.range_max);
     return result;
   }
   scene::PileRelations relations = relate_pile(scene);
@@ -76,7 +70,7 @@ GeneratedScene show_pile(const Piles& piles, const SceneId& id) {
                            .lift = pile.lift};
   result.content.cloud = std::move(scanned.cloud);
   if (config.output.clean_cloud) {
-    result.content.clean_cloud = scan::scan_exactly_from_all(scene).cloud;
+    result.content.clean_cloud = scan::scan_exactly_from_all(scene, piles.bins_alone).cloud;
     clock.end_stage("clean_cloud");
   }
 

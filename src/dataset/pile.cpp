@@ -109,6 +109,15 @@ scene::PlacedSurroundings draw_surroundings(const DatasetConfig& config, std::ui
   return scene::place_surroundings(config.surroundings, config.bin, tubes, config.all_scanners(), random);
 }
 
+scene::Scene scene_of(const DatasetConfig& config, const Pile& pile) {
+  const std::vector<scene::Scanner> scanners = config.all_scanners();
+  return {.bin = config.bin,
+          .scanner = scanners.front(),
+          .tubes = pile.rest.tubes,
+          .further_scanners = {scanners.begin() + 1, scanners.end()},
+          .surroundings = pile.surroundings};
+}
+
 Piles make_piles(const DatasetConfig& undrawn, const SceneId& id, int attempt, int lifts) {
   Piles result;
   std::map<std::string, double> seconds;
@@ -147,6 +156,7 @@ Piles make_piles(const DatasetConfig& undrawn, const SceneId& id, int attempt, i
     result.piles.push_back(std::move(left.piles.front()));
     result.piles.back().seconds = seconds;
   }
+  if (lifts > 0) result.bins_alone = scan::scan_bin_alone(scene_of(config, result.piles.back()));
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tubebin/dataset/generate_scene.hpp"
+#include "tubebin/scan/scanner.hpp"
 
 namespace tubebin::dataset {
 
@@ -21,6 +22,7 @@ struct Piles {
   std::vector<Pile> piles;       ///< after 0, 1, ..., lifts lifts
   DatasetConfig config = {};     ///< with the numbers that were drawn for them
   DrawnNumbers drawn = {};       ///< these
+  std::vector<scan::Scan> bins_alone = {};  ///< of each scanner, where there are lifts: their scenes share a bin
 };
 
 Piles make_piles(const DatasetConfig& config, const SceneId& id, int attempt, int lifts);
@@ -29,6 +31,9 @@ Piles make_piles(const DatasetConfig& config, const SceneId& id, int attempt, in
 /// nothing about the pile.
 scene::PlacedSurroundings draw_surroundings(const DatasetConfig& config, std::uint64_t seed,
                                             const std::vector<scene::PlacedTube>& tubes);
+
+/// The pile in its bin, before the scanners.
+scene::Scene scene_of(const DatasetConfig& config, const Pile& pile);
 
 /// Scans piles[step], and tells how it lies.
 GeneratedScene show_pile(const Piles& piles, const SceneId& id);

@@ -22,14 +22,21 @@ std::uint64_t source_seed(std::uint64_t seed, std::uint32_t source) {
   return source == 0 ? seed : derive_seed({seed, source});
 }
 
+/// `scene`: as the source sees it.
+Scan scan_from(std::uint32_t source, const scene::Scene& scene, std::uint64_t seed,
+               const std::vector<Scan>& bins_alone) {
+  seed = source_seed(seed, source);
+  return bins_alone.empty() ? scan(scene, seed) : scan(scene, seed, bins_alone.at(source));
+}
+
 }  // namespace
 
-MergedScan scan_from_all(const scene::Scene& scene, std::uint64_t seed) {
-  if (scene.further_scanners.empty()) return {scan(scene, seed), {}};
+MergedScan scan_from_all(const scene::Scene& scene, std::uint64_t seed, const std::vector<Scan>& bins_alone) {
+  if (scene.further_scanners.empty()) return {scan_from(0, scene, seed, bins_alone), {}};
   MergedScan merged;
   merged.tube_pixels.assign(scene.tubes.size(), 0);
   for (std::uint32_t source = 0; source < scene.source_count(); ++source) {
-    const Scan part = scan(seen_from(scene, source), source_seed(seed, source));
+    const Scan part = scan_from(source, seen_from(scene, source), seed, bins_alone);
     append_points(part.cloud, source, merged.cloud);
     for (std::size_t k = 0; k < part.tube_pixels.size(); ++k) merged.tube_pixels[k] += part.tube_pixels[k];
     if (source == 0) {
@@ -42,10 +49,23 @@ MergedScan scan_from_all(const scene::Scene& scene, std::uint64_t seed) {
   return merged;
 }
 
-MergedScan scan_exactly_from_all(scene::Scene scene) {
+MergedScan scan_exactly_from_all(scene::Scene scene, const std::vector<Scan>& bins_alone) {
   scene.scanner.effects = {};
   for (scene::Scanner& scanner : scene.further_scanners) scanner.effects = {};
-  return scan_from_all(scene);
+  return scan_from_all(scene, 0, bins_alone);
+}
+
+std::vector<Scan> scan_bin_alone(const scene::Scene& scene) {
+  std::vector<Scan> scans;
+  for (std::size_t source = 0; source < scene.source_count(); ++source) {
+    scene::Scene bin = seen_from(scene, source);
+    bin.tubes.clear();
+    bin.surroundings.reset();
+    bin.scanner.effects = {};
+    bin.scanner.region = scene::ScanRegion::bin;
+    scans.push_back(scan(bin));
+  }
+  return scans;
 }
 
 }  // namespace tubebin::scan

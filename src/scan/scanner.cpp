@@ -44,7 +44,17 @@ void find_exact_points(const RayCaster& caster, const scene::Camera& camera, con
   }
 }
 
-PointsOfRow exact_points(const RayCaster& caster, const scene::Camera& camera, const PacketBodies& bodies) {
+/// False where not all of the pixels are in the window of `bin_alone`.
+bool copy_points(const Scan& bin_alone, int column, int row, std::span<cloud::Point> points) {
+  const scene::PixelWindow& window = bin_alone.window;
+  const int x = column - window.x, y = row - window.y;
+  if (x < 0 || y < 0 || x + std::ssize(points) > window.width || y >= window.height) return false;
+  std::copy_n(bin_alone.cloud.points.begin() + std::ptrdiff_t{y} * window.width + x, points.size(), points.begin());
+  return true;
+}
+
+PointsOfRow exact_points(const RayCaster& caster, const scene::Camera& camera, const PacketBodies& bodies,
+                         const Scan& bin_alone) {
   return [&](int column, int row, std::span<cloud::Point> points, std::span<cloud::Label> labels) {
     for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
       const auto bodies_at = [&](std::size_t i) -> const BodiesInReach& {
@@ -57,7 +67,8 @@ PointsOfRow exact_points(const RayCaster& caster, const scene::Camera& camera, c
       const int first_column = column + static_cast<int>(begin);
       const std::span points_here = points.subspan(begin, end - begin);
       const std::span labels_here = labels.subspan(begin, end - begin);
-      if (here.solid_count == 0 && caster.find_bin_points(camera, first_column, row, here.boxes, points_here))
+      if (here.solid_count == 0 && (copy_points(bin_alone, first_column, row, points_here) ||
+                                    caster.find_bin_points(camera, first_column, row, here.boxes, points_here)))
         std::ranges::fill(labels_here, 0);
       else find_exact_points(caster, camera, bodies, first_column, row, points_here, labels_here);
     }
@@ -150,7 +161,7 @@ void scan_region(const PointsOfRow& points_of_row, const scene::PixelWindow& see
 
 }  // namespace
 
-Scan scan(const scene::Scene& scene, std::uint64_t seed) {
+Scan scan(const scene::Scene& scene, std::uint64_t seed, const Scan& bin_alone) {
   const scene::Scanner& scanner = scene.scanner;
   const scene::Camera camera(scanner);
   SceneSolids solids = scene_solids(scene);
@@ -167,7 +178,7 @@ Scan scan(const scene::Scene& scene, std::uint64_t seed) {
     scan_region(measured_points(measurement, reconstruction), seen, scanner.region, scan);
   } else {
     const PacketBodies bodies(caster.solids(), camera, seen, caster.depth_min());
-    scan_region(exact_points(caster, camera, bodies), seen, scanner.region, scan);
+    scan_region(exact_points(caster, camera, bodies, bin_alone), seen, scanner.region, scan);
   }
   return scan;
 }
