@@ -231,7 +231,8 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
   const ViewProjection projection = view_of(input);
   Background background = find_surroundings(input, projection, options.filtering);
   if (told.bin && !input.bin) found.doubts.push_back("the bin that was told is not in the cloud: is its pose right?");
-  describe_scene(background, projection, options.up, found);
+  const bool bin_tells_up = input.bin && options.up.isZero();
+  describe_scene(background, projection, bin_tells_up ? Vec3(input.world_from_bin.linear().col(2)) : options.up, found);
   for (const Pose& pose : input.world_from_further_sensors) found.further_viewpoints.push_back(pose.translation());
   found.bin = input.bin ? std::optional(BinFound{.world_from_bin = input.world_from_bin,
                                                  .length = input.bin->length,

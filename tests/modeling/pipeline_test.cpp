@@ -250,6 +250,8 @@ TEST(Pipeline, ARigidMotionOfTheInputMovesTheResultWithIt) {
   const ModelingResult b = model_tubes(input, known_radius());
   ASSERT_EQ(a.tubes.size(), b.tubes.size());
   EXPECT_NEAR(micro_recall_of(a, cloud), micro_recall_of(b, cloud), 0.002);
+  EXPECT_TRUE(b.found.up_is_known);  // a known bin's
+  EXPECT_LT((b.found.up - motion.linear() * Vec3::UnitZ()).norm(), 1e-9);
   for (const TubeModel& tube : a.tubes) {
     double nearest = 1.0;
     for (const TubeModel& other : b.tubes) {

@@ -69,7 +69,7 @@ struct BinFound {
 /// What the scene was found to be, and what looks wrong about it.
 struct SceneFound {
   Vec3 up = Vec3::UnitZ();                    ///< unit
-  bool up_is_known = false;                   ///< told, or a support was found
+  bool up_is_known = false;                   ///< told, by a bin as well, or a support was found
   Vec3 viewpoint = Vec3::Zero();              ///< metres, of source 0
   std::vector<Vec3> further_viewpoints = {};  ///< of the other sources
   bool viewpoint_is_told = true;              ///< else found from the grid of an organized cloud
