@@ -18,10 +18,10 @@ struct Pile {
 struct Piles {
   std::string failure;  ///< as GeneratedScene's; then there is no pile
   std::string failure_detail;
-  physics::DropFigures physics;  ///< of what failed
-  std::vector<Pile> piles;       ///< after 0, 1, ..., lifts lifts
-  DatasetConfig config = {};     ///< with the numbers that were drawn for them
-  DrawnNumbers drawn = {};       ///< these
+  physics::DropFigures physics;             ///< of what failed
+  std::vector<Pile> piles;                  ///< after 0, 1, ..., lifts lifts
+  DatasetConfig config = {};                ///< with the numbers that were drawn for them
+  DrawnNumbers drawn = {};                  ///< these
   std::vector<scan::Scan> bins_alone = {};  ///< of each scanner, where there are lifts: their scenes share a bin
 };
 

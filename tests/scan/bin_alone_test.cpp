@@ -37,8 +37,7 @@ void expect_same(const MergedScan& scanned, const MergedScan& fresh) {
 /// Whatever part of the image becomes the cloud, with and without effects.
 void expect_no_difference(scene::Scene scene) {
   const std::vector<Scan> bins_alone = scan_bin_alone(scene);
-  for (const scene::ScanRegion region :
-       {scene::ScanRegion::bin, scene::ScanRegion::full, scene::ScanRegion::tubes}) {
+  for (const scene::ScanRegion region : {scene::ScanRegion::bin, scene::ScanRegion::full, scene::ScanRegion::tubes}) {
     SCOPED_TRACE(static_cast<int>(region));
     scene.scanner.region = region;
     scene.scanner.effects = {};
@@ -72,11 +71,10 @@ TEST(BinAlone, ChangesNoByteInOtherBinsAndAmongWhatStandsAround) {
   scene.bin.rim_width = 0.03;
   scene.bin.corner_radius = 0.05;
   expect_no_difference(scene);
-  scene.surroundings = {
-      {.table = {.position = {0.0, 0.0, -0.05}, .size = {1.4, 1.2, 0.03}},
-       .boxes = {{.position = {0.25, 0.1, -0.02}, .yaw_deg = 35.0, .size = {0.2, 0.1, 0.3}}},
-       .cylinders = {{.position = {-0.4, -0.2, -0.02}, .radius = 0.06, .height = 0.5}},
-       .bins = {{.position = {0.1, 0.55, 0.0}, .yaw_deg = 100.0}}}};
+  scene.surroundings = {{.table = {.position = {0.0, 0.0, -0.05}, .size = {1.4, 1.2, 0.03}},
+                         .boxes = {{.position = {0.25, 0.1, -0.02}, .yaw_deg = 35.0, .size = {0.2, 0.1, 0.3}}},
+                         .cylinders = {{.position = {-0.4, -0.2, -0.02}, .radius = 0.06, .height = 0.5}},
+                         .bins = {{.position = {0.1, 0.55, 0.0}, .yaw_deg = 100.0}}}};
   expect_no_difference(scene);
 }
 
