@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "scan/random_scene.hpp"
+#include "scan/same_points.hpp"
 #include "tubebin/scan/scanner.hpp"
 
 namespace tubebin::scan {
@@ -18,13 +18,8 @@ scene::Scene small_scene(std::uint64_t seed) {
   return scene;
 }
 
-/// Numbers and what is none alike.
-bool same_bytes(const std::vector<cloud::Point>& a, const std::vector<cloud::Point>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(cloud::Point)) == 0;
-}
-
 void expect_same(const MergedScan& scanned, const MergedScan& fresh) {
-  EXPECT_TRUE(same_bytes(scanned.cloud.points, fresh.cloud.points));
+  EXPECT_TRUE(testing::same_points(scanned.cloud, fresh.cloud));
   EXPECT_EQ(scanned.cloud.labels, fresh.cloud.labels);
   EXPECT_EQ(scanned.cloud.colors, fresh.cloud.colors);
   EXPECT_EQ(scanned.cloud.sources, fresh.cloud.sources);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "scan/random_scene.hpp"
+#include "scan/same_points.hpp"
 #include "scan/signed_distance.hpp"
 #include "tubebin/scan/scanner.hpp"
 #include "tubebin/scene/camera.hpp"
@@ -55,8 +55,7 @@ std::size_t finite_points(const cloud::Cloud& cloud) {
 }
 
 bool same_bytes(const cloud::Cloud& a, const cloud::Cloud& b) {
-  return a.size() == b.size() && a.labels == b.labels && a.colors == b.colors &&
-         std::memcmp(a.points.data(), b.points.data(), a.size() * sizeof(cloud::Point)) == 0;
+  return testing::same_points(a, b) && a.labels == b.labels && a.colors == b.colors;
 }
 
 scene::ScannerEffects all_effects() {
