@@ -212,6 +212,11 @@ double spacing_without_lone_points(double of_foreground, double of_scan) {
   return of_scan > 0.0 ? std::min(of_foreground, 1.25 * of_scan) : of_foreground;
 }
 
+/// The option's up direction, or that of a known bin; zero where neither tells it.
+Vec3 told_up(const ModelingInput& input, const ModelingOptions& options) {
+  return input.bin && options.up.isZero() ? Vec3(input.world_from_bin.linear().col(2)) : options.up;
+}
+
 /// A scene after step 1.
 struct FilteredScene {
   std::vector<cloud::Point> measured;  ///< that `input` views; none: it views the points that were told
@@ -231,8 +236,7 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
   const ViewProjection projection = view_of(input);
   Background background = find_surroundings(input, projection, options.filtering);
   if (told.bin && !input.bin) found.doubts.push_back("the bin that was told is not in the cloud: is its pose right?");
-  const bool bin_tells_up = input.bin && options.up.isZero();
-  describe_scene(background, projection, bin_tells_up ? Vec3(input.world_from_bin.linear().col(2)) : options.up, found);
+  describe_scene(background, projection, told_up(input, options), found);
   for (const Pose& pose : input.world_from_further_sensors) found.further_viewpoints.push_back(pose.translation());
   found.bin = input.bin ? std::optional(BinFound{.world_from_bin = input.world_from_bin,
                                                  .length = input.bin->length,
