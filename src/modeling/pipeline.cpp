@@ -70,9 +70,9 @@ std::vector<TubeModel> join_classes(const std::vector<TubeClass>& classes, const
     if (result.tube_length <= 0.0) result.tube_length = joining.tube_length;
     seen += length_of(found.pieces);
     explained += joining.explained * length_of(found.pieces);
-    std::ranges::move(joining.tubes_branch
-                          ? join_branches(joining.paths, found.radius, occlusion, options.tube_length)
-                          : join_likely_branches(joining.paths, found.radius, occlusion, options.tube_length),
+    const double longest = joining.longest_shape > 0.0 ? joining.longest_shape : options.tube_length;
+    std::ranges::move(joining.tubes_branch ? join_branches(joining.paths, found.radius, occlusion, longest)
+                                           : join_likely_branches(joining.paths, found.radius, occlusion, longest),
                       std::back_inserter(tubes));
   }
   if (!told.empty() && explained < seen / 2.0)

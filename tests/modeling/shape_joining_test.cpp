@@ -72,7 +72,9 @@ TEST(CommonShape, IsThatOfPartsBentAlike) {
   const auto shapes = possible_shapes(whole, pieces);
   ASSERT_EQ(shapes.size(), 1u);
   EXPECT_NEAR(polyline_length(shapes.front()), kLength, 2.0 * kRadius);  // the mean over a radius cuts corners
-  pieces.resize(2);  // the whole one, and too little to make another
+  pieces.resize(1);
+  EXPECT_TRUE(possible_shapes(whole, pieces).empty());
+  pieces.push_back(without_first_corner(turned(80.0, {0, 0.5, 0}), 0.15)[1]);  // too little to make half another
   EXPECT_TRUE(possible_shapes(whole, pieces).empty());
 }
 
@@ -180,6 +182,23 @@ TEST_F(ShapeJoiningUnderLid, TheSceneShowsTheShapeThoughTubesSeemToBranch) {
   EXPECT_NEAR(joining.tube_length, kLength, 2.0 * kRadius);
   ASSERT_EQ(joining.paths.size(), 6u);
   for (const TubePath& path : joining.paths) EXPECT_NEAR(polyline_length(path.nodes), kLength, 3.0 * kRadius);
+}
+
+TEST_F(ShapeJoiningUnderLid, TheSceneShowsTwoShapes) {
+  // Copies of the L lie on all but a leg of each U.
+  const std::vector<Vec3> l = {kU[0], kU[1], kU[2]};
+  std::vector<TubePiece> pieces;
+  for (const double x : {-0.2, 0.05, 0.3}) {
+    pieces.push_back(piece_along(moved(kU, turned(20.0 * x, {x, 0.35, 0}))));
+    pieces.push_back(piece_along(moved(l, turned(-20.0 * x, {x, -0.15, 0}))));
+  }
+  const Joining joining = join_pieces(pieces, occlusion(), 0.0);
+  EXPECT_EQ(joining.tube_length, 0.0);
+  EXPECT_NEAR(joining.longest_shape, kLength, 2.0 * kRadius);
+  EXPECT_DOUBLE_EQ(joining.explained, 1.0);
+  ASSERT_EQ(joining.paths.size(), 6u);
+  const auto is_u = [](const TubePath& path) { return polyline_length(path.nodes) > kLength - 2.0 * kRadius; };
+  EXPECT_EQ(std::ranges::count_if(joining.paths, is_u), 3);
 }
 
 TEST_F(ShapeJoiningUnderLid, TheSceneShowsTheShapeItself) {

@@ -67,7 +67,7 @@ std::vector<Curve> bent_pieces(std::span<const TubePiece> pieces, double radius)
 }
 
 /// Whether the pieces that are at least half as long as the shape lie on it, or it on them where they go over to another
-/// tube, for two fifths of their length and as much as makes two tubes, ends that fits miss left out.
+/// tube, for two fifths of their length and as much as makes a tube and a half.
 bool is_common(const Curve& shape, const std::vector<Curve>& pieces, double radius) {
   double explained = 0.0, all = 0.0;
   for (const Curve& piece : pieces) {
@@ -77,7 +77,7 @@ bool is_common(const Curve& shape, const std::vector<Curve>& pieces, double radi
         std::minmax(shape, piece, [](const Curve& a, const Curve& b) { return a.samples.size() < b.samples.size(); });
     if (lies_on(shorter.samples, longer.samples, radius)) explained += std::min(piece.length, shape.length);
   }
-  return explained >= std::max(1.75 * shape.length, 0.4 * all);
+  return explained >= std::max(1.5 * shape.length, 0.4 * all);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// The shape that a bin's tubes have in common where they are parts of one kind, bent alike.
+/// The shapes that a bin's tubes have in common where they are parts of one kind or of a few, bent alike.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 namespace tubebin::modeling {
 
 /// The shapes that many of the scene's tubes may have, by samples every half radius, the longest first, at most five: the
-/// centrelines among `tubes` that as much of the `pieces` lies on as makes two tubes, and two fifths of those that are long
+/// centrelines among `tubes` that as much of the `pieces` lies on as makes a tube and a half, and two fifths of those that are long
 /// enough to tell. They bend by at least two diameters, since straight tubes are all alike.
 std::vector<std::vector<Vec3>> possible_shapes(std::span<const std::vector<Vec3>> tubes,
                                                std::span<const TubePiece> pieces);

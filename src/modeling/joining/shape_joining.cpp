@@ -1,7 +1,7 @@
 #include "modeling/joining/shape_joining.hpp"
 
 #include <algorithm>
-#include <iterator>
+#include <numeric>
 #include <optional>
 
 #include "modeling/joining/cover_margins.hpp"
@@ -136,37 +136,50 @@ double whole_bends_of(const std::vector<Section>& sections, const std::vector<st
 
 }  // namespace
 
-ShapeJoining join_by_shapes(const std::vector<TubePiece>& pieces, std::span<const std::vector<Vec3>> shapes,
-                            const OcclusionTest& occlusion) {
-  ShapeJoining result;
-  if (pieces.empty()) return result;
-  if (shapes.size() == 1) result.tube_length = polyline_length(shapes.front());
-  const double radius = pieces.front().radius;
-  const std::vector<Section> sections = sections_of(pieces);
-  std::vector<ShapeCopy> copies;
+ShapeSearch::ShapeSearch(const std::vector<TubePiece>& pieces, std::span<const std::vector<Vec3>> shapes,
+                         const OcclusionTest& occlusion)
+    : shapes_(shapes), radius_(pieces.front().radius), sections_(sections_of(pieces)) {
   for (const std::vector<Vec3>& shape : shapes)
-    std::ranges::move(find_shape_copies(sections, shape, radius, occlusion), std::back_inserter(copies));
-  const CopyCover cover = cheapest_copies(sections, copies, radius);
-  result.cost = cover.cost;
-  std::vector<std::optional<std::size_t>> copy_of(sections.size());
-  for (const ChosenCopy& chosen : cover.chosen) {
-    for (const PlacedSection& each : chosen.copy.placed) copy_of[each.section] = result.paths.size();
-    result.paths.push_back(path_of(chosen, sections));
+    copies_.push_back(find_shape_copies(sections_, shape, radius_, occlusion));
+}
+
+ShapeJoining ShapeSearch::join(std::span<const std::size_t> chosen) const {
+  ShapeJoining result;
+  std::vector<ShapeCopy> copies;
+  for (const std::size_t k : chosen) {
+    copies.insert(copies.end(), copies_[k].begin(), copies_[k].end());
+    result.longest = std::max(result.longest, polyline_length(shapes_[k]));
   }
-  result.whole_bends = whole_bends_of(sections, copy_of);
+  if (chosen.size() == 1) result.tube_length = result.longest;
+  const CopyCover cover = cheapest_copies(sections_, copies, radius_);
+  result.cost = cover.cost;
+  std::vector<std::optional<std::size_t>> copy_of(sections_.size());
+  for (const ChosenCopy& each : cover.chosen) {
+    for (const PlacedSection& placed : each.copy.placed) copy_of[placed.section] = result.paths.size();
+    result.paths.push_back(path_of(each, sections_));
+  }
+  result.whole_bends = whole_bends_of(sections_, copy_of);
   double all = 0.0;
-  for (std::size_t k = 0; k < sections.size(); ++k) {
-    const Section& section = sections[k];
+  for (std::size_t k = 0; k < sections_.size(); ++k) {
+    const Section& section = sections_[k];
     all += section.length;
-    const auto explains = [&](const ChosenCopy& chosen) { return lies_on_copy(section, chosen.copy, radius); };
+    const auto explains = [&](const ChosenCopy& each) { return lies_on_copy(section, each.copy, radius_); };
     if (copy_of[k] || std::ranges::any_of(cover.chosen, explains)) {
       result.explained += section.length;
     } else {
-      result.rest.push_back({.nodes = section.samples, .radius = radius, .points = {}, .evidence = section.evidence});
+      result.rest.push_back({.nodes = section.samples, .radius = radius_, .points = {}, .evidence = section.evidence});
     }
   }
   result.explained /= all;
   return result;
+}
+
+ShapeJoining join_by_shapes(const std::vector<TubePiece>& pieces, std::span<const std::vector<Vec3>> shapes,
+                            const OcclusionTest& occlusion) {
+  if (pieces.empty()) return {};
+  std::vector<std::size_t> all(shapes.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return ShapeSearch(pieces, shapes, occlusion).join(all);
 }
 
 }  // namespace tubebin::modeling

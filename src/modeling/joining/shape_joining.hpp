@@ -1,10 +1,12 @@
 /// Joining of tubes that are bent alike: the pieces that one copy of their shape explains are one tube's.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "modeling/joining/occlusion.hpp"
+#include "modeling/joining/shape_copies.hpp"
 #include "tubebin/modeling/tube_model.hpp"
 
 namespace tubebin::modeling {
@@ -14,12 +16,31 @@ struct ShapeJoining {
   std::vector<TubePiece> rest;  ///< what no copy explains
   double explained = 0.0;       ///< part of the pieces' length that the copies explain
   double whole_bends = 0.0;     ///< part of the pieces' sharp bends both sides of which are in one copy; 1 without any
-  double cost = 0.0;            ///< nats: -log of the scene's likelihood, but for what is the same for any shape
-  double tube_length = 0.0;     ///< of the shape, metres; 0 where there are several
+  /// nats: -log of the scene's likelihood, but for what is the same for any shape; infinite before copies were chosen
+  double cost = std::numeric_limits<double>::infinity();
+  double tube_length = 0.0;  ///< of the shape, metres; 0 where there are several
+  double longest = 0.0;      ///< of the shapes, metres
 };
 
-/// Chooses the copies of `shapes`, centrelines by samples every half radius, that explain the pieces best: each piece, or its
-/// part between two sharp bends, in one copy.
+/// Where copies of `shapes`, centrelines by samples every half radius, explain pieces. Keeps references to all that it is
+/// given; there is at least one piece.
+class ShapeSearch {
+ public:
+  ShapeSearch(const std::vector<TubePiece>& pieces, std::span<const std::vector<Vec3>> shapes,
+              const OcclusionTest& occlusion);
+
+  /// Chooses the copies of the shapes with these indices that explain the pieces best: each piece, or its part between two
+  /// sharp bends, in one copy.
+  ShapeJoining join(std::span<const std::size_t> chosen) const;
+
+ private:
+  std::span<const std::vector<Vec3>> shapes_;
+  double radius_;
+  std::vector<Section> sections_;
+  std::vector<std::vector<ShapeCopy>> copies_;  ///< of each shape
+};
+
+/// The same with all of the shapes.
 ShapeJoining join_by_shapes(const std::vector<TubePiece>& pieces, std::span<const std::vector<Vec3>> shapes,
                             const OcclusionTest& occlusion);
 

@@ -22,6 +22,9 @@ constexpr double kClearJoinCost = -2.0;
 /// The right join is among an end's cheapest few, or it could not be told from chance anyhow.
 constexpr std::size_t kJoinsPerEnd = 4;
 constexpr std::size_t kNodeLimit = 1000;
+/// A second kind of part makes the scan e^40 times likelier or more where it shows; a part of the first kind that is seen in
+/// part, and taken for a kind of its own, e^12 times at most (piles of five to fourteen rods).
+constexpr double kFurtherShapeGain = 20.0;
 
 /// What may be joined.
 class JoinSearch {
@@ -152,23 +155,48 @@ std::vector<std::vector<Vec3>> seen_tubes(const Cover& cover) {
   return tubes;
 }
 
-/// Copies of the shape that explains the scene best, where one explains three quarters of all that is seen of tubes, and five
-/// eighths of the sharp bends: copies of a single bend explain many tubes by halves.
-std::optional<ShapeJoining> with_common_shape(const Cover& cover, const std::vector<TubePiece>& pieces,
-                                              const OcclusionTest& occlusion) {
-  std::optional<ShapeJoining> best;
-  for (const std::vector<Vec3>& shape : possible_shapes(seen_tubes(cover), pieces)) {
-    ShapeJoining joining = join_by_shapes(pieces, {&shape, 1}, occlusion);
-    if (joining.explained < 0.75 || joining.whole_bends < 0.625 || (best && joining.cost >= best->cost)) continue;
-    best = std::move(joining);
+/// Some of the shapes by their indices, and the copies of them that explain the scene best.
+struct ShapeSet {
+  std::vector<std::size_t> shapes;
+  ShapeJoining joining;
+};
+
+/// The set with that further shape which explains the scene best.
+ShapeSet with_further_shape(const ShapeSet& set, const ShapeSearch& search, std::size_t count) {
+  ShapeSet best;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::vector<std::size_t> shapes = set.shapes;
+    shapes.push_back(k);
+    if (ShapeJoining joining = search.join(shapes); joining.cost < best.joining.cost)
+      best = {std::move(shapes), std::move(joining)};
   }
   return best;
+}
+
+/// Copies of the shapes that the tubes have in common: of the one that explains the scene best, and of further ones where
+/// these gain enough. None unless they explain three quarters of all that is seen of tubes, and five eighths of the sharp
+/// bends: copies of a single bend explain many tubes by halves.
+std::optional<ShapeJoining> with_common_shapes(const Cover& cover, const std::vector<TubePiece>& pieces,
+                                               const OcclusionTest& occlusion) {
+  const std::vector<std::vector<Vec3>> shapes = possible_shapes(seen_tubes(cover), pieces);
+  const ShapeSearch search(pieces, shapes, occlusion);
+  ShapeSet best, larger = with_further_shape({}, search, shapes.size());
+  while (larger.joining.cost < best.joining.cost - kFurtherShapeGain) {
+    best = std::move(larger);
+    larger = with_further_shape(best, search, shapes.size());
+  }
+  const ShapeJoining& joining = best.joining;
+  if (joining.explained < 0.75 || joining.whole_bends < 0.625) return std::nullopt;
+  return std::move(best.joining);
 }
 
 /// Chains what the copies leave.
 Joining with_rest(ShapeJoining joining, const OcclusionTest& occlusion, double tube_length) {
   std::ranges::move(join_pieces(joining.rest, occlusion, tube_length, false).paths, std::back_inserter(joining.paths));
-  return {.paths = std::move(joining.paths), .tube_length = joining.tube_length, .explained = joining.explained};
+  return {.paths = std::move(joining.paths),
+          .tube_length = joining.tube_length,
+          .longest_shape = joining.longest,
+          .explained = joining.explained};
 }
 
 }  // namespace
@@ -184,7 +212,7 @@ Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& o
   if (tube_length <= 0.0 && !search.tubes_branch())
     cover = with_common_length(with_longest_length(cover, search), search);
   if (tries_shape) {
-    if (auto alike = with_common_shape(cover, pieces, occlusion))
+    if (auto alike = with_common_shapes(cover, pieces, occlusion))
       return with_rest(std::move(*alike), occlusion, tube_length);
   }
   const std::vector<double>& common = cover.lengths.common;

@@ -10,16 +10,17 @@ namespace tubebin::modeling {
 
 struct Joining {
   std::vector<TubePath> paths;
-  double tube_length = 0.0;   ///< metres: as given, or the common length of the scene's tubes; 0 where there is none
-  bool tubes_branch = false;  ///< enough pieces start on another's side (show_branches)
-  double explained = 0.0;     ///< part of the pieces' length on copies of a shape
+  double tube_length = 0.0;    ///< metres: as given, or the common length of the scene's tubes; 0 where there is none
+  bool tubes_branch = false;   ///< enough pieces start on another's side (show_branches)
+  double longest_shape = 0.0;  ///< metres, of those that copies were joined by; 0: by none
+  double explained = 0.0;      ///< part of the pieces' length on copies of these
 };
 
 /// Chooses the chains of pieces that explain the scan best: each piece in one tube, joins by their likelihood, tubes of
 /// `tube_length` metres (0: one that explains the scan better than any lengths do, if there is one) whose missing part
 /// must find room where the scanner could not see. An end on another piece's side (branch_joining.hpp) is no end that a
-/// chain could go on from. Where most tubes turn out to be bent alike (common_shape.hpp), copies of their shape take up the
-/// pieces first, unless `tries_shape` is false, and chains what the copies leave.
+/// chain could go on from. Where most tubes turn out to be bent alike (common_shape.hpp), in one way or a few, copies of these
+/// shapes take up the pieces first, unless `tries_shape` is false, and chains what the copies leave.
 Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length,
                     bool tries_shape = true);
 
