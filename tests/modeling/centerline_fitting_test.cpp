@@ -10,7 +10,8 @@ namespace {
 const Vec3 kAbove(0, 0, 1);  // metres, the viewpoint
 
 std::optional<TubePiece> fit_all(const FilteredCloud& cloud, double radius) {
-  return fit_centerline(cloud, {cloud.source, VoteGraph(cloud, cloud.source, radius)}, {}, radius, kAbove);
+  const VoteCurve curve = find_vote_curve(cloud, {cloud.source, VoteGraph(cloud, cloud.source, radius)}, radius);
+  return fit_centerline(cloud, curve, bend_tolerance({&curve, 1}, radius), {}, radius, kAbove);
 }
 
 TEST(CenterlineFitting, FindsTheCylindersThatPointsLieOn) {
@@ -31,6 +32,16 @@ TEST(CenterlineFitting, FindsTheCylindersThatPointsLieOn) {
       EXPECT_LT(distance_between(piece->nodes, nodes), noise == 0.0 ? 0.1 * kRadius : 0.2 * kRadius);
       EXPECT_EQ(piece->points, cloud.source);
     }
+}
+
+TEST(CenterlineFitting, KeepsBothLegsOfACornerThatIsALittleSharperThanRight) {
+  for (const double degrees : {85.0, 95.0}) {
+    const Vec3 leg = 0.1 * Vec3(std::cos(radians(degrees)), std::sin(radians(degrees)), 0.0);
+    const std::vector<Vec3> nodes = {{-0.15, 0, 0}, Vec3::Zero(), leg};
+    const std::optional<TubePiece> piece = fit_all(upper_half_of(nodes), kRadius);
+    ASSERT_TRUE(piece.has_value());
+    EXPECT_LT(distance_between(piece->nodes, nodes), 0.5 * kRadius) << degrees;
+  }
 }
 
 TEST(CenterlineFitting, GivesAStretchShorterThanItIsWideTheAxisOfItsNormals) {

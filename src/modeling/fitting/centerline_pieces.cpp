@@ -26,13 +26,18 @@ std::vector<SurfacePoint> loose_points(const FilteredCloud& cloud, const std::ve
 
 std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vector<Segment>& segments,
                                     const ViewProjection& projection, double radius) {
+  std::vector<VoteCurve> curves;
+  for (const Segment& segment : segments)
+    for (Stretch& stretch : split_branches(cloud, segment, radius))
+      curves.push_back(find_vote_curve(cloud, std::move(stretch), radius));
+  const double tolerance = bend_tolerance(curves, radius);
   const std::vector<SurfacePoint> loose = loose_points(cloud, segments);
   std::vector<TubePiece> pieces;
-  for (const Segment& segment : segments)
-    for (const Stretch& stretch : split_branches(cloud, segment, radius)) {
-      const Vec3 viewpoint = viewpoint_of(cloud, stretch.segment, projection);
-      if (auto piece = fit_centerline(cloud, stretch, loose, radius, viewpoint)) pieces.push_back(std::move(*piece));
-    }
+  for (const VoteCurve& curve : curves) {
+    const Vec3 viewpoint = viewpoint_of(cloud, curve.points, projection);
+    if (auto piece = fit_centerline(cloud, curve, tolerance, loose, radius, viewpoint))
+      pieces.push_back(std::move(*piece));
+  }
   return pieces;
 }
 

@@ -11,6 +11,7 @@
 #include "modeling/fitting/centerline_segmentation.hpp"
 #include "modeling/fitting/piece_cleaning.hpp"
 #include "modeling/fitting/piece_evidence.hpp"
+#include "modeling/fitting/tube_stretches.hpp"
 #include "modeling/input/normals.hpp"
 #include "modeling/input/radius_estimation.hpp"
 
@@ -39,6 +40,11 @@ void keep_surest(std::vector<TubePiece>& pieces) {
   std::ranges::stable_sort(pieces, std::greater<>(), &TubePiece::evidence);
   pieces.resize(kMostPieces);
 }
+
+struct ExaminedPiece {
+  TubePiece piece;
+  PieceEvidence evidence;
+};
 
 /// Short and with little evidence, or of a curvature that is a little off: it may be a bit of a tube of another radius.
 struct UnsurePiece {
@@ -163,7 +169,8 @@ class ClassFinder {
     };
     std::vector<TubePiece> pieces;
     for (const Segment& segment : segments) {
-      auto piece = fit_centerline(sample, {segment, VoteGraph(sample, segment, radius)}, {}, radius,
+      const VoteCurve curve = find_vote_curve(sample, {segment, VoteGraph(sample, segment, radius)}, radius);
+      auto piece = fit_centerline(sample, curve, bend_tolerance({&curve, 1}, radius), {}, radius,
                                   viewpoint_of(sample, segment, projection_));
       if (piece && is_round(*piece)) pieces.push_back(std::move(*piece));
       if (pieces.size() == kPieces) break;
@@ -175,18 +182,35 @@ class ClassFinder {
     return pieces.empty() ? 0.0 : refine_radius(pieces, sample.points, radius);
   }
 
+  /// Before a known background all but what other tubes leave over is tube.
+  bool all_is_tube() const { return background_is_known_ && !rest_; }
+
+  /// The pieces that are tube, and of the others what is.
+  std::vector<ExaminedPiece> examined_tubes(const FilteredCloud& sample, double radius) const {
+    const OcclusionTest occlusion = occlusion_.with_radius(radius);
+    const auto examine = [&](const TubePiece& piece) { return examine_piece(piece, sample.points, occlusion); };
+    const auto is_tube_by_itself = [&](const TubePiece& piece) { return is_tube(examine(piece), radius, noise_); };
+    std::vector<ExaminedPiece> tubes;
+    for (TubePiece& piece : find_centerline_pieces(sample, segment_by_votes(sample, radius), projection_, radius)) {
+      const PieceEvidence evidence = examine(piece);
+      if (all_is_tube() ? !has_other_radius(evidence) : is_tube(evidence, radius, noise_)) {
+        tubes.push_back({std::move(piece), evidence});
+      } else if (!all_is_tube()) {
+        for (TubePiece& stretch : tube_stretches(piece, sample.points, is_tube_by_itself))
+          if (const PieceEvidence own = examine(stretch); is_tube(own, radius, noise_))
+            tubes.push_back({std::move(stretch), own});
+      }
+    }
+    return tubes;
+  }
+
   PossibleClass pieces_of(const FilteredCloud& cloud, double radius) {
     // Points that lie closer together cost time and add nothing: these make 24 votes a voxel of segment_by_votes.
     const FilteredCloud sample = thinned(cloud, radius / 6.0, projection_, radius);
     PossibleClass found{.sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}, .evidence = 0.0};
-    const OcclusionTest occlusion = occlusion_.with_radius(radius);
     double information = 0.0;
-    for (TubePiece& piece : find_centerline_pieces(sample, segment_by_votes(sample, radius), projection_, radius)) {
-      const PieceEvidence evidence = examine_piece(piece, sample.points, occlusion);
-      // Before a known background all but what other tubes leave over is tube.
-      const bool all_is_tube = background_is_known_ && !rest_;
-      if (all_is_tube ? has_other_radius(evidence) : !is_tube(evidence, radius, noise_)) continue;
-      if (!all_is_tube && stands_upright(piece, up_)) {
+    for (auto& [piece, evidence] : examined_tubes(sample, radius)) {
+      if (!all_is_tube() && stands_upright(piece, up_)) {
         standing_.push_back(std::move(piece));
         continue;
       }
