@@ -139,9 +139,10 @@ class TreeJoiner {
     return {.possible = std::move(trees_), .candidates = std::move(candidates), .cover = std::move(cover)};
   }
 
-  /// Of the possible lengths, that which explains the scan best, metres; 0 where none does.
+  /// Of the possible lengths, that which explains the scan best, metres; 0 where tubes of any length do.
   double common_length() {
-    double best = 0.0, least = std::numeric_limits<double>::infinity();
+    double best = 0.0, least = 0.0;
+    for (const Tree& tree : likely_trees(0.0)) least += tree.link_cost;
     for (const double length : possible_lengths()) {
       const double cost = cost_of_length(cheapest_forest(length, kRough), length);
       if (cost >= least) continue;
@@ -301,6 +302,12 @@ double recurring_length(const std::vector<TubePiece>& paths) {
   return std::numeric_limits<double>::infinity();
 }
 
+/// Whether one of the paths has the length that makes it a tube by itself, metres.
+bool links_whole(const BranchLink& link, const std::vector<TubePiece>& paths, double whole) {
+  const auto is_whole = [&](const TubePiece& path) { return std::abs(path.length() - whole) <= path.radius; };
+  return is_whole(paths[link.end / 2]) || is_whole(paths[link.other]);
+}
+
 /// Whether another path is as long, to a radius.
 bool shares_length(const TubePiece& path, const std::vector<TubePiece>& paths) {
   const auto is_as_long = [&](const TubePiece& other) {
@@ -341,12 +348,19 @@ std::vector<TubeModel> join_branches(std::vector<TubePath> paths, double radius,
   const std::vector<TubePiece> pieces = pieces_of(paths, radius);
   std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion, 40.0 * radius);
   std::vector<BranchLink> links = find_branch_links(pieces, ends, occlusion, kLinkCostLimit);
-  TreeJoiner joiner(pieces, std::move(ends), std::move(links), radius);
+  TreeJoiner joiner(pieces, ends, links, radius);
   const double length = tube_length > 0.0 ? tube_length : joiner.common_length();
+  std::vector<Tree> trees;
+  if (length > 0.0) {
+    trees = joiner.trees_of(joiner.cheapest_forest(length, kThorough));
+  } else {
+    const double whole = recurring_length(pieces);
+    std::erase_if(links, [&](const BranchLink& link) { return links_whole(link, pieces, whole); });
+    joiner = TreeJoiner(pieces, std::move(ends), std::move(links), radius);
+    trees = joiner.likely_trees(0.0);
+  }
   std::vector<TubeModel> tubes;
-  for (const Tree& tree :
-       length > 0.0 ? joiner.trees_of(joiner.cheapest_forest(length, kThorough)) : joiner.likely_trees(0.0))
-    tubes.push_back(joiner.tube_of(tree, paths));
+  for (const Tree& tree : trees) tubes.push_back(joiner.tube_of(tree, paths));
   return tubes;
 }
 
@@ -358,10 +372,9 @@ std::vector<TubeModel> join_likely_branches(std::vector<TubePath> paths, double 
   const double whole = tube_length > 0.0 ? tube_length : recurring_length(pieces);
   std::vector<PieceEnd> ends = find_piece_ends(pieces, occlusion, 40.0 * radius);
   std::vector<BranchLink> links = find_branch_links(pieces, ends, occlusion, 0.0);
-  const auto is_whole = [&](const TubePiece& path) { return std::abs(path.length() - whole) <= radius; };
   const auto is_no_branch = [&](const BranchLink& link) {
     const TubePiece &branch = pieces[link.end / 2], &trunk = pieces[link.other];
-    return link.other_end || link.cost >= 0.0 || !is_long(branch) || is_whole(branch) || is_whole(trunk) ||
+    return link.other_end || link.cost >= 0.0 || !is_long(branch) || links_whole(link, pieces, whole) ||
            ((tube_length > 0.0 || link.cost > kOnSideCost) && branch.length() + trunk.length() > whole + 2.0 * radius);
   };
   for (BranchLink& link : links) link.cost += kUnfittedCost * link.in_view;

@@ -9,8 +9,9 @@
 namespace tubebin::modeling {
 
 /// The tubes, as sets of paths, that explain the scan best: links (branch_links.hpp) by their likelihood, and the length
-/// of all paths together as common to the scene's tubes as `tube_length` says (metres; 0: what those in sight agree on,
-/// if they do). Each branch is led up to the centreline that it branches off.
+/// of all paths together as common to the scene's tubes as `tube_length` says (metres; 0: what explains the scan better than
+/// tubes of any length, if anything does; else a path of the longest length that recurs is whole). Each branch is led up to
+/// the centreline that it branches off.
 std::vector<TubeModel> join_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion,
                                      double tube_length);
 

@@ -35,7 +35,7 @@ std::vector<Vec3> line_between(const Vec3& tip, const Vec3& place, double radius
 
 /// What the scan says of a branch's side between its tip and its place on the other path.
 struct SideEvidence {
-  double in_view = 0.0;       ///< part of what is turned to a scanner that is not hidden
+  double in_view = 0.0;       ///< part of what is turned to a scanner that is not hidden, but for what fits may miss
   double seen_through = 0.0;  ///< radii^2, clear of the other path's surface
 };
 
@@ -46,7 +46,7 @@ SideEvidence examine_side(const Vec3& tip, const Vec3& place, const TubePiece& o
   const double radius = other.radius, length = (place - tip).norm();
   const Vec3 along = (place - tip) / length;
   const Vec3 right = along.unitOrthogonal(), up = along.cross(right);
-  int facing = 0, in_view = 0, seen_through = 0;
+  int facing = 0, on_surface = 0, empty = 0, seen_through = 0;
   for (int k = 0; k < kAround; ++k) {
     const Vec3 normal = std::cos(k * kStep) * right + std::sin(k * kStep) * up;
     for (double ahead = 0.5 * kStep * radius; ahead < length; ahead += kStep * radius) {
@@ -57,11 +57,15 @@ SideEvidence examine_side(const Vec3& tip, const Vec3& place, const TubePiece& o
       if (off < radius) continue;
       const bool is_empty = seen == Evidence::empty || seen == Evidence::no_data || seen == Evidence::beyond;
       ++facing;
-      in_view += is_empty || seen == Evidence::surface;
+      on_surface += seen == Evidence::surface;
+      empty += is_empty;
       seen_through += is_empty && off > 1.25 * radius;
     }
   }
-  return {.in_view = facing > 0 ? double(in_view) / facing : 0.0, .seen_through = seen_through * kStep * kStep};
+  // Fits may miss what one scanner sees of a radius' length: pi radii^2.
+  const double missed = std::min(on_surface * kStep * kStep / std::numbers::pi, 1.0);
+  return {.in_view = facing > 0 ? (empty + missed * on_surface) / facing : 0.0,
+          .seen_through = seen_through * kStep * kStep};
 }
 
 /// What the scene's paths are like.
