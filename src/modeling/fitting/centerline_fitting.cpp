@@ -111,7 +111,7 @@ void drop_sharp_ends(std::vector<Vec3>& nodes, double radius) {
 
 double bend_tolerance(std::span<const VoteCurve> curves, double radius) {
   // r / 20 is what the means of some ten votes, each off by r / 6, are good for.
-  return std::clamp(4.0 * roughness(curves), radius / 20.0, radius / 8.0);
+  return std::clamp(4.0 * roughness(curves), radius / 20.0, radius / 10.0);
 }
 
 std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const VoteCurve& votes, double tolerance,

@@ -26,10 +26,10 @@ constexpr std::size_t kMostPieces = 1500;
 /// In radii, the longest piece of a radius that is one of tubes: necks and caps of bottles and jars end before.
 constexpr double kLeastLength = 8.0;
 
-/// In nats, of a further radius' long pieces, which then know it to 1 %. Edges and rims seem round here and there, and of
-/// no one radius.
-constexpr double kFurtherEvidence = 5000.0;
-/// And as a part of the first radius': where tubes branch or touch, some surface is as round as a thicker tube.
+/// In nats, of a radius' long pieces, which then know it to 1 %. Edges and rims seem round here and there, and of no one
+/// radius. Less is believed where no radius has as much.
+constexpr double kEnoughEvidence = 5000.0;
+/// And of a further radius as a part of the first one's: where tubes branch or touch, some surface is as round as a thicker tube.
 constexpr double kFurtherShare = 0.01;
 
 /// In units of 1 / radius: so far off bends and joints put a tube's curvature.
@@ -99,6 +99,7 @@ class ClassFinder {
 
   std::vector<TubeClass> find_all() {
     std::vector<double> tried;
+    PossibleClass weak;  // the likeliest of those that are not believed
     const std::size_t enough = cloud_.points.size() / 100;
     for (std::size_t k = 0; k < kMostTries && possible_.size() < kMostClasses; ++k) {
       if (rest_ && rest_->points.size() < enough) break;
@@ -107,10 +108,14 @@ class ClassFinder {
       PossibleClass found = refined_class(left(), seen, tried);
       tried.push_back(found.sure.radius > 0.0 ? found.sure.radius : seen);
       set_aside(standing_);
-      if (!is_believed(found)) continue;
-      set_aside(found.sure.pieces);
-      possible_.push_back(std::move(found));
+      if (is_believed(found)) {
+        set_aside(found.sure.pieces);
+        possible_.push_back(std::move(found));
+      } else if (found.evidence > weak.evidence) {
+        weak = std::move(found);
+      }
     }
+    if (possible_.empty() && weak.evidence > 0.0) possible_.push_back(std::move(weak));
     std::vector<TubeClass> classes = settled(possible_);
     for (TubeClass& found : classes) drop_streaks(found);
     std::erase_if(classes, [](const TubeClass& found) { return found.pieces.empty(); });
@@ -150,8 +155,8 @@ class ClassFinder {
   }
 
   bool is_believed(const PossibleClass& found) const {
-    if (possible_.empty()) return found.evidence > 0.0;
-    return found.evidence > std::max(kFurtherEvidence, kFurtherShare * possible_.front().evidence);
+    const double share = possible_.empty() ? 0.0 : kFurtherShare * possible_.front().evidence;
+    return found.evidence > std::max(kEnoughEvidence, share);
   }
 
   /// As the longest pieces that are tubes show it; 0 where none is.
@@ -170,7 +175,7 @@ class ClassFinder {
     std::vector<TubePiece> pieces;
     for (const Segment& segment : segments) {
       const VoteCurve curve = find_vote_curve(sample, {segment, VoteGraph(sample, segment, radius)}, radius);
-      auto piece = fit_centerline(sample, curve, bend_tolerance({&curve, 1}, radius), {}, radius,
+      auto piece = fit_centerline(sample, curve, bend_tolerance({}, radius), {}, radius,
                                   viewpoint_of(sample, segment, projection_));
       if (piece && is_round(*piece)) pieces.push_back(std::move(*piece));
       if (pieces.size() == kPieces) break;

@@ -26,6 +26,9 @@ constexpr double kTreeLengthCostLimit = 10.0;
 /// that are found whole are seldom too long (5 % of 1400 by over 1.9 radii), and often too short (5 % by over 10.7).
 constexpr double kExcessScatter = 1.25, kLackScatter = 2.5;
 
+/// -log of how seldom (1 in 20) the trees of a scene are of any length.
+constexpr double kNoLengthCost = 3.0;
+
 /// -log of how seldom (1 in 8) a branch whose start is in view is not fitted up to the other path's side.
 constexpr double kUnfittedCost = 2.1;
 
@@ -141,7 +144,7 @@ class TreeJoiner {
 
   /// Of the possible lengths, that which explains the scan best, metres; 0 where tubes of any length do.
   double common_length() {
-    double best = 0.0, least = 0.0;
+    double best = 0.0, least = kNoLengthCost;
     for (const Tree& tree : likely_trees(0.0)) least += tree.link_cost;
     for (const double length : possible_lengths()) {
       const double cost = cost_of_length(cheapest_forest(length, kRough), length);
