@@ -46,7 +46,7 @@ TEST(VoteCurve, BendsAreToldFromNoise) {
                   useless = noisy_arc(1.0, kRadius, 100);
   EXPECT_DOUBLE_EQ(bend_tolerance({&still, 1}, kRadius), kRadius / 20.0);
   EXPECT_NEAR(bend_tolerance({&rough, 1}, kRadius), 0.08 * kRadius, 0.01 * kRadius);
-  EXPECT_DOUBLE_EQ(bend_tolerance({&useless, 1}, kRadius), kRadius / 10.0);
+  EXPECT_DOUBLE_EQ(bend_tolerance({&useless, 1}, kRadius), kRadius / 9.0);
 }
 
 }  // namespace

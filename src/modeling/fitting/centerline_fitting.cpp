@@ -94,6 +94,7 @@ void merge_close_joints(std::vector<Vec3>& nodes, double closest) {
 
 /// Where few points, or those of a flat end, lead an end aside, grow_end may turn twice in what becomes one corner: a
 /// sharp turn within two radii is no tube, nor is a turn by much more than a right angle anywhere (cosine of 102 degrees).
+/// The longer half stays.
 void drop_sharp_ends(std::vector<Vec3>& nodes, double radius) {
   for (int end = 0; end < 2; ++end) {
     std::reverse(nodes.begin(), nodes.end());
@@ -111,7 +112,7 @@ void drop_sharp_ends(std::vector<Vec3>& nodes, double radius) {
 
 double bend_tolerance(std::span<const VoteCurve> curves, double radius) {
   // r / 20 is what the means of some ten votes, each off by r / 6, are good for.
-  return std::clamp(4.0 * roughness(curves), radius / 20.0, radius / 10.0);
+  return std::clamp(4.0 * roughness(curves), radius / 20.0, radius / 9.0);
 }
 
 std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const VoteCurve& votes, double tolerance,

@@ -174,6 +174,7 @@ class ClassFinder {
     };
     std::vector<TubePiece> pieces;
     for (const Segment& segment : segments) {
+      // Bends that are cut would make the radius too small.
       const VoteCurve curve = find_vote_curve(sample, {segment, VoteGraph(sample, segment, radius)}, radius);
       auto piece = fit_centerline(sample, curve, bend_tolerance({}, radius), {}, radius,
                                   viewpoint_of(sample, segment, projection_));

@@ -66,9 +66,9 @@ std::vector<Curve> bent_pieces(std::span<const TubePiece> pieces, double radius)
   return bent;
 }
 
-/// Whether the pieces that are at least half as long as the shape lie on it, or it on them where they go over to another
-/// tube, for two fifths of their length and as much as makes a tube and a half.
-bool is_common(const Curve& shape, const std::vector<Curve>& pieces, double radius) {
+/// How many tubes of this shape the pieces that lie on it make up, ends that fits miss left out, where these are two fifths of
+/// those that are at least half as long as it; else none. It lies on pieces that go over to another tube.
+double tubes_of_shape(const Curve& shape, const std::vector<Curve>& pieces, double radius) {
   double explained = 0.0, all = 0.0;
   for (const Curve& piece : pieces) {
     if (piece.length < shape.length / 2.0) continue;
@@ -77,7 +77,7 @@ bool is_common(const Curve& shape, const std::vector<Curve>& pieces, double radi
         std::minmax(shape, piece, [](const Curve& a, const Curve& b) { return a.samples.size() < b.samples.size(); });
     if (lies_on(shorter.samples, longer.samples, radius)) explained += std::min(piece.length, shape.length);
   }
-  return explained >= std::max(1.5 * shape.length, 0.4 * all);
+  return explained >= 0.4 * all ? explained / shape.length : 0.0;
 }
 
 }  // namespace
@@ -85,14 +85,20 @@ bool is_common(const Curve& shape, const std::vector<Curve>& pieces, double radi
 std::vector<std::vector<Vec3>> possible_shapes(std::span<const std::vector<Vec3>> tubes,
                                                std::span<const TubePiece> pieces) {
   constexpr std::size_t kMost = 5;
+  constexpr double kNearlyTwo = 1.75, kAndAHalf = 1.5;  // tubes
   if (pieces.empty()) return {};
   const double radius = pieces.front().radius;
   const std::vector<Curve> bent = bent_pieces(pieces, radius);
   std::vector<Curve> common;
+  double most = 0.0;
   for (const std::vector<Vec3>& nodes : tubes) {
     Curve shape = smoothed(nodes, radius);
-    if (sagitta(shape.samples) >= 4.0 * radius && is_common(shape, bent, radius)) common.push_back(std::move(shape));
+    if (sagitta(shape.samples) < 4.0 * radius) continue;
+    const double made_up = tubes_of_shape(shape, bent, radius);
+    most = std::max(most, made_up);
+    if (made_up >= kAndAHalf) common.push_back(std::move(shape));
   }
+  if (most < kNearlyTwo) return {};
   // What is seen of a tube is a part of its shape.
   std::ranges::stable_sort(common, std::greater<>(), &Curve::length);
   std::vector<std::vector<Vec3>> distinct;
