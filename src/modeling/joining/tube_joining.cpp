@@ -175,7 +175,7 @@ ShapeSet with_further_shape(const ShapeSet& set, const ShapeSearch& search, std:
 
 /// Copies of the shapes that the tubes have in common: of the one that explains the scene best, and of further ones where
 /// these gain enough. None unless they explain three quarters of all that is seen of tubes, and five eighths of the sharp
-/// bends: copies of a single bend explain many tubes by halves.
+/// bends (of several shapes nine tenths): copies of what two kinds have in common explain many tubes by halves.
 std::optional<ShapeJoining> with_common_shapes(const Cover& cover, const std::vector<TubePiece>& pieces,
                                                const OcclusionTest& occlusion) {
   const std::vector<std::vector<Vec3>> shapes = possible_shapes(seen_tubes(cover), pieces);
@@ -186,7 +186,8 @@ std::optional<ShapeJoining> with_common_shapes(const Cover& cover, const std::ve
     larger = with_further_shape(best, search, shapes.size());
   }
   const ShapeJoining& joining = best.joining;
-  if (joining.explained < 0.75 || joining.whole_bends < 0.625) return std::nullopt;
+  const double least_whole = best.shapes.size() > 1 ? 0.9 : 0.625;
+  if (joining.explained < 0.75 || joining.whole_bends < least_whole) return std::nullopt;
   return std::move(best.joining);
 }
 
