@@ -22,8 +22,8 @@ struct ShapeJoining {
   double longest = 0.0;      ///< of the shapes, metres
 };
 
-/// Where copies of `shapes`, centrelines by samples every half radius, explain pieces. Keeps references to all that it is
-/// given; there is at least one piece.
+/// Where copies of `shapes`, centrelines by samples every half radius, explain pieces, of which there is at least one. Keeps
+/// references to the shapes.
 class ShapeSearch {
  public:
   ShapeSearch(const std::vector<TubePiece>& pieces, std::span<const std::vector<Vec3>> shapes,

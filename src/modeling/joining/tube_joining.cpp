@@ -165,6 +165,7 @@ struct ShapeSet {
 ShapeSet with_further_shape(const ShapeSet& set, const ShapeSearch& search, std::size_t count) {
   ShapeSet best;
   for (std::size_t k = 0; k < count; ++k) {
+    if (std::ranges::find(set.shapes, k) != set.shapes.end()) continue;
     std::vector<std::size_t> shapes = set.shapes;
     shapes.push_back(k);
     if (ShapeJoining joining = search.join(shapes); joining.cost < best.joining.cost)
@@ -179,6 +180,7 @@ ShapeSet with_further_shape(const ShapeSet& set, const ShapeSearch& search, std:
 std::optional<ShapeJoining> with_common_shapes(const Cover& cover, const std::vector<TubePiece>& pieces,
                                                const OcclusionTest& occlusion) {
   const std::vector<std::vector<Vec3>> shapes = possible_shapes(seen_tubes(cover), pieces);
+  if (shapes.empty()) return std::nullopt;
   const ShapeSearch search(pieces, shapes, occlusion);
   ShapeSet best, larger = with_further_shape({}, search, shapes.size());
   while (larger.joining.cost < best.joining.cost - kFurtherShapeGain) {
