@@ -3,7 +3,7 @@
 // taken apart by LIFTS lifts; processor time of one process, rejected attempts included.
 #include <ctime>
 
-#include "dataset/pile.hpp"
+#include "dataset/bins_alone.hpp"
 #include "tubebin/core/memory.hpp"
 #include "tubebin/dataset/scene_store.hpp"
 
@@ -24,7 +24,7 @@ struct Costs {
 };
 
 void make_scenes(const dataset::DatasetConfig& config, const dataset::SceneStore& store, const dataset::SceneId& id,
-                 int lifts, Costs& costs) {
+                 int lifts, dataset::BinsAlone& bins_alone, Costs& costs) {
   const double start = now();
   dataset::Piles made = dataset::make_piles(config, id, 0, lifts);
   for (int attempt = 1; !made.failure.empty(); ++attempt, ++costs.rejected) {
@@ -37,7 +37,7 @@ void make_scenes(const dataset::DatasetConfig& config, const dataset::SceneStore
     dataset::SceneId shown = id;
     if (lifts > 0) shown.step = static_cast<int>(step);
     const double begin = now();
-    store.begin_write(shown.name(), dataset::show_pile(made, shown).content)();
+    store.begin_write(shown.name(), dataset::show_pile(made, shown, bins_alone.of(made)).content)();
     costs.seconds += now() - begin;
     store.remove(shown.name());  // or the kernel would look for new memory for each scene
     ++costs.scenes;
@@ -65,10 +65,11 @@ int main(int argc, char** argv) try {
       "largest drift, mm | deepest penetration, mm |\n| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (int i = 5; i < argc; ++i) {
     Costs dropped, emptied;
+    dataset::BinsAlone bins_alone;
     for (int case_number = 1; case_number <= piles; ++case_number) {
       const dataset::SceneId id{config.set, std::stoi(argv[i]), case_number};
-      make_scenes(config, store, id, 0, dropped);
-      make_scenes(config, store, id, lifts, emptied);
+      make_scenes(config, store, id, 0, bins_alone, dropped);
+      make_scenes(config, store, id, lifts, bins_alone, emptied);
     }
     fmt::print("| {} | {:.1f} | {:.1f} | {:.1f} | {}, {}, {} | {:.0f} | {:.2f} | {:.2f} |\n", argv[i],
                milliseconds_a_scene(dropped), milliseconds_a_scene(emptied),

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <utility>
 
-#include "dataset/pile.hpp"
+#include "dataset/bins_alone.hpp"
 #include "dataset/scene_packer.hpp"
 #include "tubebin/dataset/generate_scene.hpp"
 #include "tubebin/jobs/batch.hpp"
@@ -57,13 +57,14 @@ std::function<std::string()> begin_scene(const DatasetFolder& folder, const Scen
 }
 
 /// In a worker process: one attempt at what is not complete of a pile's scenes. All are done when `finish` has returned.
-jobs::AttemptResult make_scenes(const DatasetFolder& folder, std::span<const SceneId> scenes, int attempt) {
+jobs::AttemptResult make_scenes(const DatasetFolder& folder, std::span<const SceneId> scenes, int attempt,
+                                BinsAlone& bins_alone) {
   const Piles made = make_piles(folder.config(), scenes.front(), attempt, std::max(scenes.back().step, 0));
   if (!made.failure.empty()) return jobs::failed_attempt(made.failure, made.failure_detail);
   std::vector<std::function<std::string()>> written;
   for (const SceneId& id : scenes) {
     if (folder.is_complete(id.name())) continue;
-    GeneratedScene scene = show_pile(made, id);
+    GeneratedScene scene = show_pile(made, id, bins_alone.of(made));
     if (!scene.failure.empty()) return jobs::failed_attempt(scene.failure, scene.failure_detail);
     written.push_back(begin_scene(folder, id, std::move(scene)));
   }
@@ -129,6 +130,7 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
   };
   for (const PileScenes& pile : piles) report.complete_before += complete_scenes(pile);
   std::vector<std::size_t> made;
+  BinsAlone bins_alone;  // each worker process fills its copy
   const jobs::BatchReport done = jobs::run_batch(
       {.size = piles.size(),
        .noun = piles.size() == scenes.size() ? "scenes" : "piles",
@@ -140,7 +142,8 @@ GenerationReport generate_dataset(DatasetFolder& folder, const std::vector<Scene
        .work =
            [&](std::size_t job, int attempt) {
              const PileScenes& pile = piles[job];
-             return make_scenes(folder, std::span(scenes).subspan(pile.begin, pile.end - pile.begin), attempt);
+             return make_scenes(folder, std::span(scenes).subspan(pile.begin, pile.end - pile.begin), attempt,
+                                bins_alone);
            },
        .on_finished =
            [&](const jobs::JobOutcome& outcome) {

@@ -35,7 +35,7 @@ std::uint64_t attempt_seed(const DatasetConfig& config, const SceneId& id, int a
                       static_cast<std::uint64_t>(id.case_number), static_cast<std::uint64_t>(attempt)});
 }
 
-GeneratedScene show_pile(const Piles& piles, const SceneId& id) {
+GeneratedScene show_pile(const Piles& piles, const SceneId& id, const std::vector<scan::Scan>& bins_alone) {
   const DatasetConfig& config = piles.config;
   const Pile& pile = piles.piles[static_cast<std::size_t>(std::max(id.step, 0))];
   GeneratedScene result;
@@ -43,7 +43,7 @@ GeneratedScene show_pile(const Piles& piles, const SceneId& id) {
   result.physics = pile.rest.figures;
   StageClock clock(result.seconds);
   const scene::Scene scene = scene_of(config, pile);
-  scan::MergedScan scanned = scan::scan_from_all(scene, pile.seed, piles.bins_alone);
+  scan::MergedScan scanned = scan::scan_from_all(scene, pile.seed, bins_alone);
   clock.end_stage("scan");
   if (!has_point(scanned.cloud)) {
     result.failure = "unseen";
@@ -70,7 +70,7 @@ GeneratedScene show_pile(const Piles& piles, const SceneId& id) {
                            .lift = pile.lift};
   result.content.cloud = std::move(scanned.cloud);
   if (config.output.clean_cloud) {
-    result.content.clean_cloud = scan::scan_exactly_from_all(scene, piles.bins_alone).cloud;
+    result.content.clean_cloud = scan::scan_exactly_from_all(scene, bins_alone).cloud;
     clock.end_stage("clean_cloud");
   }
 
@@ -92,7 +92,7 @@ GeneratedScene show_pile(const Piles& piles, const SceneId& id) {
 
 GeneratedScene generate_scene(const DatasetConfig& config, const SceneId& id, int attempt) {
   const Piles made = make_piles(config, id, attempt, std::max(id.step, 0));
-  if (made.failure.empty()) return show_pile(made, id);
+  if (made.failure.empty()) return show_pile(made, id, {});
   GeneratedScene result;
   result.failure = made.failure;
   result.failure_detail = made.failure_detail;

@@ -156,7 +156,6 @@ Piles make_piles(const DatasetConfig& undrawn, const SceneId& id, int attempt, i
     result.piles.push_back(std::move(left.piles.front()));
     result.piles.back().seconds = seconds;
   }
-  if (lifts > 0) result.bins_alone = scan::scan_bin_alone(scene_of(config, result.piles.back()));
   return result;
 }
 

@@ -18,11 +18,10 @@ struct Pile {
 struct Piles {
   std::string failure;  ///< as GeneratedScene's; then there is no pile
   std::string failure_detail;
-  physics::DropFigures physics;             ///< of what failed
-  std::vector<Pile> piles;                  ///< after 0, 1, ..., lifts lifts
-  DatasetConfig config = {};                ///< with the numbers that were drawn for them
-  DrawnNumbers drawn = {};                  ///< these
-  std::vector<scan::Scan> bins_alone = {};  ///< of each scanner, where there are lifts: their scenes share a bin
+  physics::DropFigures physics;  ///< of what failed
+  std::vector<Pile> piles;       ///< after 0, 1, ..., lifts lifts
+  DatasetConfig config = {};     ///< with the numbers that were drawn for them
+  DrawnNumbers drawn = {};       ///< these
 };
 
 Piles make_piles(const DatasetConfig& config, const SceneId& id, int attempt, int lifts);
@@ -35,7 +34,8 @@ scene::PlacedSurroundings draw_surroundings(const DatasetConfig& config, std::ui
 /// The pile in its bin, before the scanners.
 scene::Scene scene_of(const DatasetConfig& config, const Pile& pile);
 
-/// Scans piles[step], and tells how it lies.
-GeneratedScene show_pile(const Piles& piles, const SceneId& id);
+/// Scans piles[step], and tells how it lies. `bins_alone`: none, or their bin as each scanner sees it alone, which makes it
+/// faster.
+GeneratedScene show_pile(const Piles& piles, const SceneId& id, const std::vector<scan::Scan>& bins_alone);
 
 }  // namespace tubebin::dataset
