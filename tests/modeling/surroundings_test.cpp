@@ -7,7 +7,6 @@
 #include "modeling/fitting/piece_evidence.hpp"
 #include "modeling/input/bin_pose.hpp"
 #include "modeling/input/flat_regions.hpp"
-#include "modeling/input/view_grid.hpp"
 #include "tubebin/core/random.hpp"
 
 namespace tubebin::modeling {
@@ -28,9 +27,10 @@ std::vector<cloud::Point> picture(const std::function<double(double, double)>& d
 }
 
 std::vector<FlatRegion> regions_of(const std::vector<cloud::Point>& points) {
-  const ViewProjection projection(Pose::Identity(), cloud::Point(0, 0, 1));
-  const auto images = projection.images(points);
-  return find_flat_regions(projection, points, images, estimate_spacing(images));
+  SourceView view{.projection = {Pose::Identity(), cloud::Point(0, 0, 1)}, .points = points};
+  view.images = view.projection.images(points);
+  view.spacing = estimate_spacing(view.images);
+  return find_flat_regions(view);
 }
 
 TEST(FlatRegions, FindsATiltedPlaneAndItsNoise) {

@@ -39,8 +39,8 @@ Background find_background(const ModelingInput& input, const ViewProjection& pro
   const std::vector<SourceView> views = views_of(input, projection, finite);
   background.spacing = spacing_of(views);
   for (const SourceView& view : views)
-    for (FlatRegion& region : find_flat_regions(view.projection, view.points, view.images, view.spacing)) {
-      region.is_solid = is_solid(region, view.points, view.spacing);
+    for (FlatRegion& region : find_flat_regions(view)) {
+      region.is_solid = is_solid(region, view.points, view.spacing.metres);
       background.regions.push_back(region);
     }
   std::ranges::stable_sort(background.regions, std::ranges::greater(), &FlatRegion::area);

@@ -110,7 +110,8 @@ FilteredCloud filter(const ModelingInput& input, const ViewProjection& projectio
   for (const std::uint32_t i : indices) points.push_back(input.points[i]);
   FilteredCloud cloud;
   ViewProjection::Images images = projection.images(points);
-  cloud.spacing = input.sources.empty() ? estimate_spacing(images) : spacing_of(views_of(input, projection, indices));
+  cloud.spacing =
+      input.sources.empty() ? estimate_spacing(images).metres : spacing_of(views_of(input, projection, indices));
   const double range = double(images.range.front());
   const ViewGrid grid(std::move(images), points, static_cast<float>(std::max(2.0 * cloud.spacing / range, 1e-6)));
   for (const std::uint32_t k : grid.order()) {

@@ -2,219 +2,33 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
-#include "modeling/median.hpp"
+#include "modeling/input/flat_blocks.hpp"
 
 namespace tubebin::modeling {
 namespace {
 
-/// Sums over points.
-struct RegionMoments {
-  double count = 0.0;
-  Vec3 sum = Vec3::Zero();
-  double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
-
-  void add(const Vec3& p) {
-    count += 1.0;
-    sum += p;
-    xx += p.x() * p.x(), xy += p.x() * p.y(), xz += p.x() * p.z();
-    yy += p.y() * p.y(), yz += p.y() * p.z(), zz += p.z() * p.z();
-  }
-  RegionMoments& operator+=(const RegionMoments& other) {
-    count += other.count;
-    sum += other.sum;
-    xx += other.xx, xy += other.xy, xz += other.xz, yy += other.yy, yz += other.yz, zz += other.zz;
-    return *this;
-  }
-  Vec3 mean() const { return sum / count; }
-  Eigen::Matrix3d covariance() const {
-    Eigen::Matrix3d products;
-    products << xx, xy, xz, xy, yy, yz, xz, yz, zz;
-    return products / count - mean() * mean().transpose();
-  }
-};
-
-/// The plane of least squares through a set of points.
-struct FittedPlane {
-  Vec3 center = Vec3::Zero(), normal = Vec3::Zero();
-  double mean_square = std::numeric_limits<double>::infinity();  ///< of the points' distances, square metres
-
-  FittedPlane() = default;
-  explicit FittedPlane(const RegionMoments& moments) : center(moments.mean()) {
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
-    eigen.computeDirect(moments.covariance());
-    normal = eigen.eigenvectors().col(0);
-    mean_square = std::max(eigen.eigenvalues()(0), 0.0);
-  }
-};
-
-/// Points of a block in each direction, where the whole of it is measured.
-constexpr double kBlock = 4.0;
 /// How far off a region's plane, in spacings, the middle of a block may be beside its noise.
 constexpr double kOnPlane = 0.15;
-/// A block counts with this many of its sixteen points.
-constexpr double kLeastPoints = 6.0;
-
-/// The view in square blocks, and the plane through each one's points.
-class Blocks {
- public:
-  Blocks(std::span<const cloud::Point> points, const ViewProjection::Images& images, double spacing, const Vec3& origin,
-         const Vec3& viewpoint)
-      : viewpoint_(viewpoint - origin) {
-    float u_max = -std::numeric_limits<float>::infinity(), v_max = u_max;
-    u_min_ = v_min_ = -u_max;
-    for (std::size_t i = 0; i < images.size(); ++i) {
-      u_min_ = std::min(u_min_, images.u[i]), u_max = std::max(u_max, images.u[i]);
-      v_min_ = std::min(v_min_, images.v[i]), v_max = std::max(v_max, images.v[i]);
-    }
-    std::vector<float> ranges = images.range;
-    angle_ = spacing / median(ranges);
-    const double most_blocks = 1 << 22;
-    const double block =
-        std::max(kBlock * angle_, std::sqrt(double(u_max - u_min_) * double(v_max - v_min_) / most_blocks));
-    inverse_block_ = static_cast<float>(1.0 / block);
-    columns_ = static_cast<int>((u_max - u_min_) * inverse_block_) + 1;
-    rows_ = static_cast<int>((v_max - v_min_) * inverse_block_) + 1;
-    moments_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
-    for (std::size_t i = 0; i < points.size(); ++i)
-      moments_[block_of(images, i)].add(points[i].cast<double>() - origin);
-    planes_.resize(moments_.size());
-    for (std::size_t b = 0; b < moments_.size(); ++b)
-      if (moments_[b].count >= kLeastPoints) planes_[b] = FittedPlane(moments_[b]);
-  }
-
-  std::size_t block_of(const ViewProjection::Images& images, std::size_t i) const {
-    return static_cast<std::size_t>(static_cast<int>((images.v[i] - v_min_) * inverse_block_)) *
-               static_cast<std::size_t>(columns_) +
-           static_cast<std::size_t>((images.u[i] - u_min_) * inverse_block_);
-  }
-  std::size_t size() const { return moments_.size(); }
-  int columns() const { return columns_; }
-  int rows() const { return rows_; }
-  const RegionMoments& moments(std::size_t block) const { return moments_[block]; }
-  const FittedPlane& plane(std::size_t block) const { return planes_[block]; }
-  bool has_plane(std::size_t block) const { return std::isfinite(planes_[block].mean_square); }
-  /// The median of the points' standard deviations from their blocks' planes, metres; 0 without blocks.
-  double roughness() const {
-    std::vector<double> variances;
-    for (std::size_t b = 0; b < size(); ++b)
-      if (has_plane(b)) variances.push_back(planes_[b].mean_square * moments_[b].count / (moments_[b].count - 3.0));
-    return variances.empty() ? 0.0 : std::sqrt(median(variances));
-  }
-  /// Metres between neighbouring points of the block, square to the view.
-  double spacing(std::size_t block) const { return angle_ * (planes_[block].center - viewpoint_).norm(); }
-
- private:
-  Vec3 viewpoint_;  ///< as the points, from the origin of the moments
-  float u_min_, v_min_, inverse_block_;
-  int columns_, rows_;
-  double angle_;
-  std::vector<RegionMoments> moments_;
-  std::vector<FittedPlane> planes_;
-};
-
-/// A square of kSize by kSize blocks, and how far its points are off planes.
-template <int kSize>
-class Window {
- public:
-  Window(const Blocks& blocks, int row, int column) {
-    for (int k = 0; k < kSize * kSize; ++k) {
-      members_[k] = static_cast<std::size_t>((row + k / kSize) * blocks.columns() + column + k % kSize);
-      is_measured_ = is_measured_ && blocks.has_plane(members_[k]);
-    }
-    if (!is_measured_) return;
-    for (const std::size_t block : members_) {
-      within_ += blocks.plane(block).mean_square * blocks.moments(block).count;
-      moments_ += blocks.moments(block);
-    }
-    plane_ = FittedPlane(moments_);
-  }
-
-  bool is_measured() const { return is_measured_; }
-  const std::array<std::size_t, kSize * kSize>& members() const { return members_; }
-  const FittedPlane& plane() const { return plane_; }
-  /// The variance of the points about the window's plane, which takes three degrees of freedom, square metres.
-  double variance() const { return plane_.mean_square * moments_.count / (moments_.count - 3.0); }
-  /// The variance of the points about their blocks' planes, square metres.
-  double variance_within_blocks() const { return within_ / (moments_.count - 3.0 * double(kSize * kSize)); }
-
- private:
-  std::array<std::size_t, kSize * kSize> members_;
-  bool is_measured_ = true;
-  RegionMoments moments_;
-  double within_ = 0.0;
-  FittedPlane plane_;
-};
-
-/// How many times the noise's variance is that within blocks, whose planes follow the noise where neighbours share it
-/// (scanners smooth): the median over windows of two by two blocks on surfaces that are flat over four by four.
-double noise_beyond_blocks(const Blocks& blocks) {
-  constexpr std::size_t kFew = 20;
-  std::vector<double> ratios;
-  for (int row = 0; row + 3 < blocks.rows(); row += 2)
-    for (int column = 0; column + 3 < blocks.columns(); column += 2) {
-      const Window<4> whole(blocks, row, column);
-      if (!whole.is_measured()) continue;
-      double variance = 0.0;
-      for (const int r : {row, row + 2})
-        for (const int c : {column, column + 2}) variance += Window<2>(blocks, r, c).variance() / 4.0;
-      if (whole.variance() < 1.4 * variance) ratios.push_back(variance / whole.variance_within_blocks());
-    }
-  return ratios.size() < kFew ? 1.0 : std::max(median(ratios), 1.0);
-}
-
-/// The flattest window of two by two blocks that each block is part of: where it is no less flat than its blocks are,
-/// the surface is a plane there.
-class FlatWindows {
- public:
-  explicit FlatWindows(const Blocks& blocks)
-      : noise_beyond_blocks_(modeling::noise_beyond_blocks(blocks)), best_(blocks.size()) {
-    for (int row = 0; row + 1 < blocks.rows(); ++row)
-      for (int column = 0; column + 1 < blocks.columns(); ++column) look_at(blocks, row, column);
-  }
-
-  bool is_flat(std::size_t block) const { return std::isfinite(best_[block].mean_square); }
-  const FittedPlane& plane(std::size_t block) const { return best_[block]; }
-  double noise_beyond_blocks() const { return noise_beyond_blocks_; }
-
- private:
-  void look_at(const Blocks& blocks, int row, int column) {
-    const Window<2> window(blocks, row, column);
-    if (!window.is_measured()) return;
-    const double spacing = blocks.spacing(window.members().front());
-    const double noise = noise_beyond_blocks_ * window.variance_within_blocks();
-    // A parabola x^2 / 2 r over a width w is w^2 / (27 r) off its best line, root mean square: eight spacings of a
-    // surface with r = 80 spacings make 0.03 spacings, noise apart. The noise of 64 points varies by a sixth.
-    if (window.variance() > 1.4 * noise + 0.0009 * spacing * spacing) return;
-    if (window.plane().mean_square > 0.25 * spacing * spacing) return;
-    for (const std::size_t b : window.members())
-      if (window.plane().mean_square < best_[b].mean_square) best_[b] = window.plane();
-  }
-
-  double noise_beyond_blocks_;
-  std::vector<FittedPlane> best_;
-};
 
 /// Blocks that lie on one plane.
 class Region {
  public:
-  RegionMoments moments;
+  PointMoments moments;
   FittedPlane plane;
   double within = 0.0;  ///< sum of the squares of the points' distances to their own blocks' planes
   std::vector<std::uint32_t> blocks;
 
-  void add(const Blocks& all, std::uint32_t block) {
+  void add(const FlatBlocks& all, std::uint32_t block) {
     blocks.push_back(block);
     moments += all.moments(block);
-    within += all.plane(block).mean_square * all.moments(block).count;
+    within += all.residual(block) * all.moments(block).count;
   }
   /// What is wider than any strip of a tube may be warped. What is narrower has to be flatter than a strip of the thickest
   /// tube, and of so many points that they can tell.
-  bool is_flat(const Blocks& all, const FlatWindows& windows) const {
+  bool is_flat(const FlatBlocks& all, const FlatWindows& windows) const {
     const double spacing = all.spacing(blocks.front());
     const double noise =
         windows.noise_beyond_blocks() * within / (moments.count - 3.0 * static_cast<double>(blocks.size()));
@@ -240,7 +54,7 @@ class Region {
 /// Grows regions from block to block, the surest first.
 class RegionGrower {
  public:
-  RegionGrower(const Blocks& blocks, const FlatWindows& windows)
+  RegionGrower(const FlatBlocks& blocks, const FlatWindows& windows)
       : blocks_(blocks), windows_(windows), is_taken_(blocks.size(), false) {}
 
   std::vector<Region> grow_all() {
@@ -285,7 +99,7 @@ class RegionGrower {
   bool lies_on(std::uint32_t block, const FittedPlane& plane) const {
     constexpr double kParallel = 0.99;  // the cosine of 8 degrees
     if (std::abs(windows_.plane(block).normal.dot(plane.normal)) < kParallel) return false;
-    const double off = std::abs((blocks_.plane(block).center - plane.center).dot(plane.normal));
+    const double off = std::abs((blocks_.moments(block).mean() - plane.center).dot(plane.normal));
     return off < std::sqrt(plane.mean_square) + kOnPlane * blocks_.spacing(block);
   }
 
@@ -310,13 +124,13 @@ class RegionGrower {
     return region;
   }
 
-  const Blocks& blocks_;
+  const FlatBlocks& blocks_;
   const FlatWindows& windows_;
   std::vector<bool> is_taken_;
 };
 
 /// Tubes cut a floor into many regions of one plane.
-std::vector<Region> merge_coplanar(std::vector<Region> regions, const Blocks& blocks, const FlatWindows& windows) {
+std::vector<Region> merge_coplanar(std::vector<Region> regions, const FlatBlocks& blocks, const FlatWindows& windows) {
   std::ranges::sort(regions, [](const Region& a, const Region& b) { return a.moments.count > b.moments.count; });
   std::vector<Region> merged;
   for (Region& region : regions) {
@@ -338,7 +152,7 @@ std::vector<Region> merge_coplanar(std::vector<Region> regions, const Blocks& bl
   return merged;
 }
 
-FlatRegion flat_region(const Region& region, const Blocks& blocks, const Vec3& origin, const Vec3& viewpoint) {
+FlatRegion flat_region(const Region& region, const FlatBlocks& blocks, const Vec3& origin, const Vec3& viewpoint) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(region.moments.covariance());
   FlatRegion flat;
   flat.plane.normal = region.plane.normal;
@@ -352,25 +166,25 @@ FlatRegion flat_region(const Region& region, const Blocks& blocks, const Vec3& o
     flat.axes[k] = eigen.eigenvectors().col(2 - k);
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const std::uint32_t b : region.blocks) {
-      const double along = (blocks.plane(b).center - region.plane.center).dot(flat.axes[k]);
+      const double along = (blocks.moments(b).mean() - region.plane.center).dot(flat.axes[k]);
       low = std::min(low, along), high = std::max(high, along);
     }
     flat.center += 0.5 * (low + high) * flat.axes[k];
-    flat.half_extents[k] = 0.5 * (high - low) + kBlock / 2.0 * blocks.spacing(region.blocks.front());
+    flat.half_extents[k] = 0.5 * (high - low) + FlatBlocks::kPoints / 2.0 * blocks.spacing(region.blocks.front());
   }
   flat.area = 4.0 * flat.half_extents[0] * flat.half_extents[1];
   return flat;
 }
 
 /// Blocks in which planes show beside the noise: where that is as wide as the spacing, larger ones.
-Blocks blocks_beyond_noise(std::span<const cloud::Point> points, const ViewProjection::Images& images, double spacing,
-                           const Vec3& origin, const Vec3& viewpoint) {
+FlatBlocks blocks_beyond_noise(const SourceView& view, const Vec3& origin) {
   constexpr double kNoise = 0.4;  // spacings
-  Blocks blocks(points, images, spacing, origin, viewpoint);
-  if (blocks.roughness() < kNoise * spacing) return blocks;
+  const PointSpacing& spacing = view.spacing;
+  FlatBlocks blocks(view, spacing, origin);
+  if (blocks.roughness() < kNoise * spacing.metres) return blocks;
   // Within three by three points even tubes of three spacings' radius are nearly flat, and what is rough is noise.
-  const double noise = Blocks(points, images, 0.75 * spacing, origin, viewpoint).roughness();
-  return noise < kNoise * spacing ? blocks : Blocks(points, images, noise / kNoise, origin, viewpoint);
+  const double noise = FlatBlocks(view, 0.75 * spacing, origin).roughness() / spacing.metres;
+  return noise < kNoise ? blocks : FlatBlocks(view, noise / kNoise * spacing, origin);
 }
 
 }  // namespace
@@ -385,11 +199,11 @@ bool FlatRegion::spans(const Vec3& point, double margin) const {
          std::abs(offset.dot(axes[1])) < half_extents[1] + margin;
 }
 
-std::vector<FlatRegion> find_flat_regions(const ViewProjection& projection, std::span<const cloud::Point> points,
-                                          const ViewProjection::Images& images, double spacing) {
-  if (points.empty()) return {};
-  const Vec3 origin = points[points.size() / 2].cast<double>(), viewpoint = projection.viewpoint().cast<double>();
-  const Blocks blocks = blocks_beyond_noise(points, images, spacing, origin, viewpoint);
+std::vector<FlatRegion> find_flat_regions(const SourceView& view) {
+  if (view.points.empty()) return {};
+  const Vec3 origin = view.points[view.points.size() / 2].cast<double>();
+  const Vec3 viewpoint = view.projection.viewpoint().cast<double>();
+  const FlatBlocks blocks = blocks_beyond_noise(view, origin);
   const FlatWindows windows(blocks);
   std::vector<FlatRegion> flat;
   for (const Region& region : merge_coplanar(RegionGrower(blocks, windows).grow_all(), blocks, windows)) {

@@ -1,10 +1,9 @@
 /// What stands around the tubes and is flat: floor, table, walls, rims, boxes, of any pose.
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "tubebin/modeling/scan_view.hpp"
+#include "modeling/input/source_views.hpp"
 
 namespace tubebin::modeling {
 
@@ -34,8 +33,7 @@ struct FlatRegion {
   bool spans(const Vec3& point, double margin) const;
 };
 
-/// Flat regions, largest first. `spacing`: metres between neighbouring points at the points' median range.
-std::vector<FlatRegion> find_flat_regions(const ViewProjection& projection, std::span<const cloud::Point> points,
-                                          const ViewProjection::Images& images, double spacing);
+/// Flat regions, largest first.
+std::vector<FlatRegion> find_flat_regions(const SourceView& view);
 
 }  // namespace tubebin::modeling

@@ -40,10 +40,10 @@ std::vector<SourceView> views_of(const ModelingInput& input, const ViewProjectio
 }
 
 double spacing_of(const std::vector<SourceView>& views) {
-  if (views.size() == 1) return views.front().spacing;
+  if (views.size() == 1) return views.front().spacing.metres;
   double area = 0.0, count = 0.0;
   for (const SourceView& view : views) {
-    area += static_cast<double>(view.points.size()) * view.spacing * view.spacing;
+    area += static_cast<double>(view.points.size()) * view.spacing.metres * view.spacing.metres;
     count += static_cast<double>(view.points.size());
   }
   return count > 0.0 ? std::sqrt(area / count) : 0.0;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "modeling/input/view_grid.hpp"
 #include "tubebin/modeling/modeling_input.hpp"
 #include "tubebin/modeling/scan_view.hpp"
 
@@ -14,7 +15,7 @@ struct SourceView {
   ViewProjection projection;
   std::vector<cloud::Point> points;
   ViewProjection::Images images = {};
-  double spacing = 0.0;  ///< metres between neighbouring points at their median range (estimate_spacing)
+  PointSpacing spacing = {};
 };
 
 /// What each scanner saw of the points at `indices`, which are finite; without the scanners that saw none of them.

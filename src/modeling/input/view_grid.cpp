@@ -39,9 +39,10 @@ std::size_t count_occupied(const ViewProjection::Images& images, const Extent& e
   const auto rows = static_cast<std::size_t>((extent.v_max - extent.v_min) / cell) + 1;
   std::vector<bool> is_occupied(columns * rows, false);
   std::size_t count = 0;
+  const float per_cell = 1.0f / cell;
   for (std::size_t i = 0; i < images.size(); ++i) {
-    const auto column = std::min(static_cast<std::size_t>((images.u[i] - extent.u_min) / cell), columns - 1);
-    const auto row = std::min(static_cast<std::size_t>((images.v[i] - extent.v_min) / cell), rows - 1);
+    const auto column = std::min(static_cast<std::size_t>((images.u[i] - extent.u_min) * per_cell), columns - 1);
+    const auto row = std::min(static_cast<std::size_t>((images.v[i] - extent.v_min) * per_cell), rows - 1);
     auto occupied = is_occupied[row * columns + column];
     if (!occupied) occupied = true, ++count;
   }
@@ -93,11 +94,9 @@ std::pair<std::uint32_t, std::uint32_t> ViewGrid::range(int row, int first_colum
           starts_[base + static_cast<std::size_t>(last_column) + 1]};
 }
 
-double estimate_spacing(const ViewProjection::Images& images) {
-  if (images.size() == 0) return 0.0;
+PointSpacing estimate_spacing(const ViewProjection::Images& images) {
+  if (images.size() == 0) return {};
   const Extent extent(images);
-  std::vector<float> ranges = images.range;
-  const double range = median(ranges);
 
   // With about four points a cell few cells of a surface are empty by chance (e^-4 = 2 %), and the cells that a
   // surface covers only partly are still a small part of all.
@@ -110,7 +109,9 @@ double estimate_spacing(const ViewProjection::Images& images) {
     area = static_cast<double>(count_occupied(images, extent, static_cast<float>(cell))) * cell * cell;
     cell = std::sqrt(area * kPointsPerCell / count);
   }
-  return range * std::sqrt(area / count);
+  std::vector<float> ranges = images.range;
+  const double angle = std::sqrt(area / count);
+  return {.angle = angle, .metres = double(median(ranges)) * angle};
 }
 
 }  // namespace tubebin::modeling

@@ -34,8 +34,17 @@ class ViewGrid {
   std::vector<std::uint32_t> order_;
 };
 
-/// Root of the area that one point stands for, metres, from how many points the cells of a grid hold, at the points'
-/// median range; 0 where there are no points.
-double estimate_spacing(const ViewProjection::Images& images);
+/// Root of the area that one point stands for; 0 where there are no points.
+struct PointSpacing {
+  double angle = 0.0;   ///< in the plane of the projection, radians
+  double metres = 0.0;  ///< at the points' median range
+
+  friend PointSpacing operator*(double factor, const PointSpacing& spacing) {
+    return {factor * spacing.angle, factor * spacing.metres};
+  }
+};
+
+/// From how many points the cells of a grid hold.
+PointSpacing estimate_spacing(const ViewProjection::Images& images);
 
 }  // namespace tubebin::modeling
