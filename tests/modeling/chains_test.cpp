@@ -171,10 +171,11 @@ TEST(LengthModel, OfSeveralLengthsTheOneThatSuitsCounts) {
   EXPECT_GT(one.cost(0.3, 0.0, 0.0, false), 5.0);
   EXPECT_GT(lengths.cost(0.4, 0.0, 0.0, false), 5.0);
   EXPECT_EQ(lengths.longest(), one.longest());
-  // Which of the two it has is one more thing to tell, and the second length itself could be any.
+  // Which of the two it has is one more thing to tell, and each length itself could be any.
   EXPECT_NEAR(lengths.gain(0.5, 0.0, 0.0), one.gain(0.5, 0.0, 0.0) - std::log(2.0), 1e-12);
-  EXPECT_NEAR(lengths.cost_of_further_lengths(), one.gain(0.5, 0.0, 0.0), 1e-12);
-  EXPECT_EQ(one.cost_of_further_lengths(), 0.0);
+  EXPECT_NEAR(one.cost_of_common_lengths(), one.gain(0.5, 0.0, 0.0) + std::log(4.0), 1e-12);  // the best of four
+  EXPECT_NEAR(lengths.cost_of_common_lengths(), 2.0 * one.cost_of_common_lengths(), 1e-12);
+  EXPECT_EQ(LengthModel{.radius = kThickness}.cost_of_common_lengths(), 0.0);
 }
 
 TEST(LengthModel, RecurringLengthsAreSharedByTwoTubesOrMore) {

@@ -97,7 +97,8 @@ class ChainSearch {
   /// Of the chains that hold the same pieces, no best cover needs any but the cheapest.
   void keep_if_cheapest(Chain& chain) {
     chain.room = room_of(chain);
-    chain.path.cost = chain.join_cost + length_cost(chain) + end_cost(chain.first_end) + end_cost(chain.last_end);
+    chain.length_cost = length_cost(chain);
+    chain.path.cost = chain.join_cost + chain.length_cost + end_cost(chain.first_end) + end_cost(chain.last_end);
     const auto [entry, added] = chain_of_key_.try_emplace(chain.key, chains_.size());
     if (added) chains_.push_back(chain);
     else if (chain.path.cost < chains_[entry->second].path.cost) chains_[entry->second] = chain;

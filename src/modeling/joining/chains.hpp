@@ -21,9 +21,10 @@ struct Chain {
   std::uint32_t last_end = 0;   ///< where it ends so far
   std::uint64_t key = 0;        ///< the items' keys, xor: the same for the same items in any order (Zobrist 1970)
   double join_cost = 0.0;
-  double length = 0.0;   ///< of pieces and bridges, metres
-  double bridged = 0.0;  ///< of bridges alone, metres
-  double room = 0.0;     ///< that it may go on unseen at its ends, metres
+  double length = 0.0;       ///< of pieces and bridges, metres
+  double bridged = 0.0;      ///< of bridges alone, metres
+  double room = 0.0;         ///< that it may go on unseen at its ends, metres
+  double length_cost = 0.0;  ///< what its length adds to the path's cost
 };
 
 /// All chains that may be in the best cover of the pieces, with their costs.

@@ -59,9 +59,10 @@ double LengthModel::gain_beside(double one, double length, double bridged, doubl
   return length < one && one < length + room ? std::log(any / one) : 0.0;
 }
 
-double LengthModel::cost_of_further_lengths() const {
+double LengthModel::cost_of_common_lengths() const {
   double cost = 0.0;
-  for (std::size_t k = 1; k < common.size(); ++k) cost += gain_beside(common[k], common[k], 0.0, 0.0);
+  for (const double one : common)
+    cost += gain_beside(one, one, 0.0, 0.0) + std::log(static_cast<double>(kPossibleLengths));
   return cost;
 }
 

@@ -22,8 +22,8 @@ struct LengthModel {
   /// `longest_likely` are as likely for.
   double gain(double length, double bridged, double room) const;
 
-  /// nats, against lengths that only the scan tells: each beyond the first could be any.
-  double cost_of_further_lengths() const;
+  /// nats, against common lengths that only the scan tells: each could be any, and is the best of those that are tried.
+  double cost_of_common_lengths() const;
 
   /// Lengths that tubes agree on, of those in sight from end to end: those of the most tube, summed up over them, first.
   std::vector<double> possible_common(std::vector<double> seen) const;

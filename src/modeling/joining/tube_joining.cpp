@@ -86,14 +86,26 @@ Cover cheapest_cover(PieceGraph graph, const LengthModel& lengths) {
   return {std::move(graph), lengths, std::move(chosen), std::move(paths), std::move(choice)};
 }
 
-/// What speaks against the cover, nats.
+/// nats, of so many yes or no, as likely as they are in all: their entropy.
+double entropy(double yes, double all) {
+  double sum = 0.0;
+  for (const double count : {yes, all - yes})
+    if (count > 0.0) sum -= count * std::log(count / all);
+  return sum;
+}
+
+/// What speaks against the cover, nats. How often a tube seems to have none of the common lengths, since the rest of it is
+/// lost or is another's, the cover itself tells: in a crowded pile that is every second one.
 double cost_of(const Cover& cover) {
-  double cost = cover.lengths.cost_of_further_lengths();
+  constexpr double kOff = 2.0;  // nats, two standard deviations of length
+  double cost = cover.lengths.cost_of_common_lengths(), off = 0.0;
   for (const Chain& chain : cover.chains) {
-    cost += chain.path.cost;
-    cost -= cover.lengths.gain(chain.length, chain.bridged, chain.room);
+    cost += chain.path.cost - cover.lengths.gain(chain.length, chain.bridged, chain.room);
+    if (chain.length_cost <= kOff) continue;
+    cost -= chain.length_cost;
+    off += 1.0;
   }
-  return cost;
+  return cost + entropy(off, static_cast<double>(cover.chains.size()));
 }
 
 /// The lengths of the tubes with both ends in sight. Bits of surface have no tube's length.
