@@ -37,6 +37,8 @@ Json scene_json(const ModelingResult& result) {
   Json radii = Json::array();
   for (std::size_t k = 0; k < result.radii.size(); ++k)
     radii.push_back({{"radius", rounded(result.radii[k])}, {"error", rounded(result.radius_errors[k])}});
+  Json lengths = Json::array();
+  for (const double length : result.lengths) lengths.push_back(rounded(length));
   Json json = {{"up", place(found.up)},
                {"up_is_known", found.up_is_known},
                {"viewpoint", place(found.viewpoint)},
@@ -44,6 +46,7 @@ Json scene_json(const ModelingResult& result) {
                {"flat_regions", found.flat_regions},
                {"bin", found.bin ? bin_json(*found.bin) : Json()},
                {"radii", radii},
+               {"lengths", lengths},
                {"unexplained", std::round(found.unexplained * 1e4) / 1e4},
                {"doubts", found.doubts}};
   for (const Vec3& further : found.further_viewpoints) json["further_viewpoints"].push_back(place(further));
@@ -99,7 +102,7 @@ std::string format_model_json(const ModelingResult& result, const std::vector<cl
                {"filtered_points", result.labels.size()},
                {"unlabeled_points", points[0]},
                {"radius", rounded(result.radius)},
-               {"tube_length", rounded(result.tube_length)},
+               {"tube_length", result.lengths.size() == 1 ? rounded(result.lengths.front()) : 0.0},
                {"noise", rounded(result.noise)},
                {"spacing", rounded(result.spacing)},
                {"scene", scene_json(result)},

@@ -33,7 +33,7 @@ std::string describe_found(const ModelingResult& result) {
     radii +=
         fmt::format("{}{:.2f} +- {:.2f} mm", k > 0 ? ", " : "", result.radii[k] * 1e3, result.radius_errors[k] * 1e3);
   const std::string length =
-      result.tube_length > 0.0 ? fmt::format("{:.3f} m", result.tube_length) : std::string("not common");
+      result.lengths.empty() ? "not common" : fmt::format("{:.3f} m", fmt::join(result.lengths, ", "));
   std::string viewpoints = place_text(found.viewpoint);
   for (const Vec3& further : found.further_viewpoints) viewpoints += ", " + place_text(further);
   const std::string bin =

@@ -20,7 +20,7 @@ class BranchJoining : public LidScene {
 };
 
 TEST_F(BranchJoining, ABranchThatStartsOnASideIsLedUpToIt) {
-  const auto tubes = join_branches(tree(0.3, 0.5 * kRadius), kRadius, occlusion(), 0.0);
+  const auto tubes = join_branches(tree(0.3, 0.5 * kRadius), kRadius, occlusion(), 0.0).tubes;
   ASSERT_EQ(tubes.size(), 1u);
   ASSERT_EQ(tubes[0].paths.size(), 2u);
   EXPECT_NEAR(polyline_length(tubes[0].paths[0].nodes), 0.3, 1e-9);  // longest first
@@ -30,27 +30,28 @@ TEST_F(BranchJoining, ABranchThatStartsOnASideIsLedUpToIt) {
 }
 
 TEST_F(BranchJoining, ATubeThatEndsBesideAnotherIsNoBranchOfIt) {
-  EXPECT_EQ(join_branches(tree(0.3, 2.1 * kRadius), kRadius, occlusion(), 0.0).size(), 2u);  // the gap is in sight
-  EXPECT_TRUE(join_branches({}, kRadius, occlusion(), 0.0).empty());
+  EXPECT_EQ(join_branches(tree(0.3, 2.1 * kRadius), kRadius, occlusion(), 0.0).tubes.size(),
+            2u);  // the gap is in sight
+  EXPECT_TRUE(join_branches({}, kRadius, occlusion(), 0.0).tubes.empty());
 }
 
 TEST_F(BranchJoining, AmongTubesOfOneLengthOnlyWhatIsNotAsLongIsABranch) {
   const auto tubes_of_length = [&](double length, double start) {
-    return join_likely_branches(tree(0.3, start), kRadius, occlusion(), length);
+    return join_likely_branches(tree(0.3, start), kRadius, occlusion(), length).tubes;
   };
   EXPECT_EQ(tubes_of_length(0.0, 0.5 * kRadius).size(), 1u);
   EXPECT_EQ(tubes_of_length(0.5, 0.5 * kRadius).size(), 1u);
   EXPECT_EQ(tubes_of_length(0.3, 0.5 * kRadius).size(), 2u);   // the trunk is whole
   EXPECT_EQ(tubes_of_length(0.35, 0.5 * kRadius).size(), 2u);  // together they are longer
   EXPECT_EQ(tubes_of_length(0.5, 2.1 * kRadius).size(), 2u);
-  EXPECT_TRUE(join_likely_branches({}, kRadius, occlusion(), 0.0).empty());
+  EXPECT_TRUE(join_likely_branches({}, kRadius, occlusion(), 0.0).tubes.empty());
 }
 
 TEST_F(BranchJoining, OnlyASureBranchMakesATubeLongerThanALengthThatRecurs) {
   const auto tubes_beside = [&](std::vector<TubePath> paths, int of_one_length) {
     for (int k = 0; k < of_one_length; ++k)
       paths.push_back(path({{-0.125, -0.2 - 0.1 * k, 0}, {0.125, -0.2 - 0.1 * k, 0}}));
-    return join_likely_branches(paths, kRadius, occlusion(), 0.0).size() - of_one_length;
+    return join_likely_branches(paths, kRadius, occlusion(), 0.0).tubes.size() - of_one_length;
   };
   EXPECT_EQ(tubes_beside(tree(0.0, 2.0 * kRadius), 2), 1u);  // starts under the lid
   EXPECT_EQ(tubes_beside(tree(0.0, 2.0 * kRadius), 3), 2u);
@@ -61,7 +62,7 @@ TEST_F(BranchJoining, AmongTubesOfAFewLengthsASingleBranchThatIsNotSureIsNone) {
   const auto tubes_of = [&](double start, double length_beside) {
     std::vector<TubePath> paths = tree(0.0, start);
     paths.push_back(path({{-0.15, -0.3, 0}, {length_beside - 0.15, -0.3, 0}}));
-    return join_likely_branches(paths, kRadius, occlusion(), 0.0).size();
+    return join_likely_branches(paths, kRadius, occlusion(), 0.0).tubes.size();
   };
   EXPECT_EQ(tubes_of(2.0 * kRadius, 0.3), 3u);   // starts under the lid, and the trunk is as long as the tube beside it
   EXPECT_EQ(tubes_of(2.0 * kRadius, 0.25), 2u);  // of no length that is shared
@@ -70,7 +71,7 @@ TEST_F(BranchJoining, AmongTubesOfAFewLengthsASingleBranchThatIsNotSureIsNone) {
 
 TEST_F(BranchJoining, ABranchThatWasFollowedBeyondItsTrunkIsCutBackToIt) {
   for (const auto join : {join_branches, join_likely_branches}) {
-    const auto tubes = join(tree(0.3, -1.5 * kRadius), kRadius, occlusion(), 0.0);
+    const auto tubes = join(tree(0.3, -1.5 * kRadius), kRadius, occlusion(), 0.0).tubes;
     ASSERT_EQ(tubes.size(), 1u);
     ASSERT_EQ(tubes[0].paths.size(), 2u);
     EXPECT_NEAR(tubes[0].length(), 0.4, kRadius);
@@ -82,13 +83,13 @@ TEST_F(BranchJoining, ArmsThatAreAlikeByChanceShowNoLengthThatRecurs) {
   std::vector<TubePath> paths = tree(0.0, 2.0 * kRadius);  // starts under the lid
   const double arm = polyline_length(paths[1].nodes);
   for (const double y : {-0.3, -0.4}) paths.push_back(path({{0, y, 0}, {arm, y, 0}}));
-  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0).size(), 3u);
+  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0).tubes.size(), 3u);
 }
 
 /// What tells a branch from a flat end that touches a side is in sight or is not.
 TEST_F(BranchJoining, AFlatEndThatTouchesASideIsABranchOnlyWhereTheWedgeBetweenThemIsHidden) {
   const auto tubes_at = [&](double y) {
-    return join_likely_branches(tree(y, 1.1 * kRadius), kRadius, occlusion(), 0.0).size();
+    return join_likely_branches(tree(y, 1.1 * kRadius), kRadius, occlusion(), 0.0).tubes.size();
   };
   EXPECT_EQ(tubes_at(0.3), 2u);
   EXPECT_EQ(tubes_at(0.0), 1u);  // under the lid
@@ -97,7 +98,7 @@ TEST_F(BranchJoining, AFlatEndThatTouchesASideIsABranchOnlyWhereTheWedgeBetweenT
 /// Under the lid a branch's start is out of sight, and so is whether it is one.
 TEST_F(BranchJoining, AKnownLengthDecidesWhatTheLidHides) {
   const auto tubes_of_length = [&](double length) {
-    return join_branches(tree(0.0, 0.038), kRadius, occlusion(), length);
+    return join_branches(tree(0.0, 0.038), kRadius, occlusion(), length).tubes;
   };
   EXPECT_EQ(tubes_of_length(0.0).size(), 2u);  // not known
   EXPECT_EQ(tubes_of_length(0.3).size(), 2u);

@@ -1,4 +1,6 @@
 // Tubes that branch: taken apart into stretches, and put together again.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -34,6 +36,22 @@ TEST(Branches, OneTubeIsFoundForEachTree) {
     EXPECT_EQ(tube.paths.size(), 3u);
     EXPECT_NEAR(tube.length(), scene.tubes[0].tube.length(), 0.02);
   }
+  ASSERT_EQ(result.lengths.size(), 1u);
+  EXPECT_NEAR(result.lengths.front(), scene.tubes[0].tube.length(), 0.02);
+}
+
+TEST(Branches, LengthsThatPlainTubesShareAreTold) {
+  std::vector<scene::PlacedTube> tubes;
+  for (const double y : {-0.14, -0.10, -0.06, -0.02, 0.02, 0.06, 0.10, 0.14})
+    tubes.push_back(tube_along({{-0.1, y, kRadius}, {y < 0.0 ? 0.05 : 0.15, y, kRadius}}));
+  const scene::Scene scene = scene_of(tubes);
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), known_radius());
+  ASSERT_EQ(result.lengths.size(), 2u);
+  EXPECT_NEAR(result.lengths.front(), 0.15, kRadius / 2.0);
+  EXPECT_NEAR(result.lengths.back(), 0.25, kRadius / 2.0);
+  EXPECT_THAT(describe_found(result),
+              ::testing::HasSubstr(fmt::format("length {:.3f}, {:.3f} m;", result.lengths[0], result.lengths[1])));
 }
 
 TEST(Branches, OneForkAmongPlainTubesIsOneTube) {

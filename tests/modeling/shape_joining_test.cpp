@@ -177,7 +177,8 @@ TEST_F(ShapeJoiningUnderLid, TheSceneShowsTheShapeThoughTubesSeemToBranch) {
     pieces.push_back(piece_along(moved(kU, pose * onto_middle)));
   }
   const Joining joining = join_pieces(pieces, occlusion(), 0.0);
-  EXPECT_NEAR(joining.tube_length, kLength, 2.0 * kRadius);
+  ASSERT_EQ(joining.lengths.size(), 1u);
+  EXPECT_NEAR(joining.lengths.front(), kLength, 2.0 * kRadius);
   ASSERT_EQ(joining.paths.size(), 6u);
   for (const TubePath& path : joining.paths) EXPECT_NEAR(polyline_length(path.nodes), kLength, 3.0 * kRadius);
 }
@@ -191,8 +192,9 @@ TEST_F(ShapeJoiningUnderLid, TheSceneShowsTwoShapes) {
     pieces.push_back(piece_along(moved(l, turned(-20.0 * x, {x, -0.15, 0}))));
   }
   const Joining joining = join_pieces(pieces, occlusion(), 0.0);
-  EXPECT_EQ(joining.tube_length, 0.0);
-  EXPECT_NEAR(joining.longest_shape, kLength, 2.0 * kRadius);
+  ASSERT_EQ(joining.lengths.size(), 2u);
+  EXPECT_NEAR(std::ranges::max(joining.lengths), kLength, 2.0 * kRadius);
+  EXPECT_NEAR(std::ranges::min(joining.lengths), polyline_length(l), 2.0 * kRadius);
   EXPECT_DOUBLE_EQ(joining.explained, 1.0);
   ASSERT_EQ(joining.paths.size(), 6u);
   const auto is_u = [](const TubePath& path) { return polyline_length(path.nodes) > kLength - 2.0 * kRadius; };
@@ -204,7 +206,8 @@ TEST_F(ShapeJoiningUnderLid, TheSceneShowsTheShapeItself) {
   pieces.push_back(piece_along(moved(kU, turned(30.0, {-0.2, 0.4, 0}))));
   pieces.push_back(piece_along(moved(kU, turned(-70.0, {0.2, -0.4, 0}))));
   const Joining joining = join_pieces(pieces, occlusion(), 0.0);
-  EXPECT_NEAR(joining.tube_length, kLength, 2.0 * kRadius);
+  ASSERT_EQ(joining.lengths.size(), 1u);
+  EXPECT_NEAR(joining.lengths.front(), kLength, 2.0 * kRadius);
   ASSERT_EQ(joining.paths.size(), 4u);
   for (const TubePath& path : joining.paths) {
     EXPECT_NEAR(polyline_length(path.nodes), kLength, 3.0 * kRadius);

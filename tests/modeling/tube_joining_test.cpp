@@ -42,7 +42,8 @@ TEST_F(TubeJoining, ALengthIsCommonWhereMostTubesHaveIt) {
     std::vector<TubePiece> pieces;
     for (std::size_t i = 0; i < lengths.size(); ++i)
       pieces.push_back(straight(0.05 * double(i) - 0.3, -0.25, -0.25 + lengths[i]));
-    return join_pieces(pieces, occlusion(), 0.0).tube_length;
+    const std::vector<double> common = join_pieces(pieces, occlusion(), 0.0).lengths;
+    return common.size() == 1 ? common.front() : 0.0;
   };
   EXPECT_DOUBLE_EQ(length_of({0.5, 0.5, 0.501, 0.502, 0.35}), 0.501);
   EXPECT_EQ(length_of({0.5, 0.5, 0.55, 0.6, 0.4, 0.35}), 0.0);  // two by chance

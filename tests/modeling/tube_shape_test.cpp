@@ -105,7 +105,8 @@ TEST(TubeShape, JoinsWhatIsHiddenForTheMostPart) {
   ASSERT_EQ(told.tubes.size(), 2u);
   for (const TubeModel& tube : told.tubes) EXPECT_NEAR(tube.length(), kLongLeg + kShortLeg, 2.0 * kRadius);
   EXPECT_TRUE(told.found.doubts.empty()) << told.found.doubts.front();
-  EXPECT_NEAR(told.tube_length, kLongLeg + kShortLeg, kRadius);
+  ASSERT_EQ(told.lengths.size(), 1u);
+  EXPECT_NEAR(told.lengths.front(), kLongLeg + kShortLeg, kRadius);
 }
 
 TEST(TubeShape, AWrongOneIsDoubted) {

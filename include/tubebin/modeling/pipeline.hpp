@@ -86,7 +86,7 @@ struct ModelingResult {
   double radius = 0.0;                ///< metres: as given, or as estimated
   std::vector<double> radii;          ///< metres, of all tubes, the commonest first
   std::vector<double> radius_errors;  ///< metres, standard deviations; 0 where told
-  double tube_length = 0.0;           ///< metres: as given, or as estimated; 0 where the tubes have no common length
+  std::vector<double> lengths;        ///< metres, that tubes have in common: as given, or as estimated, ascending
   double noise = 0.0;                 ///< metres, standard deviation of the points' distances to the fitted surfaces
   double spacing = 0.0;               ///< metres between neighbouring filtered points
   StageSeconds seconds;

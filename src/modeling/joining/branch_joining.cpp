@@ -83,28 +83,27 @@ struct Branching {
 
 }  // namespace
 
-std::vector<TubeModel> join_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion,
-                                     double tube_length) {
+BranchedTubes join_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion,
+                            double tube_length) {
   if (paths.empty()) return {};
   Branching branching(std::move(paths), radius, occlusion, kLinkCostLimit);
   TreeJoiner joiner = branching.joiner();
-  const double length = tube_length > 0.0 ? tube_length : joiner.common_length();
+  BranchedTubes joining{.tubes = {}, .tube_length = tube_length > 0.0 ? tube_length : joiner.common_length()};
   std::vector<Tree> trees;
-  if (length > 0.0) {
-    trees = joiner.trees_of_length(length);
+  if (joining.tube_length > 0.0) {
+    trees = joiner.trees_of_length(joining.tube_length);
   } else {
     const double whole = recurring_length(branching.pieces);
     std::erase_if(branching.links, [&](const BranchLink& link) { return links_whole(link, branching.pieces, whole); });
     joiner = branching.joiner();
     trees = joiner.likely_trees(0.0);
   }
-  std::vector<TubeModel> tubes;
-  for (const Tree& tree : trees) tubes.push_back(joiner.tube_of(tree, branching.paths));
-  return tubes;
+  for (const Tree& tree : trees) joining.tubes.push_back(joiner.tube_of(tree, branching.paths));
+  return joining;
 }
 
-std::vector<TubeModel> join_likely_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion,
-                                            double tube_length) {
+BranchedTubes join_likely_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion,
+                                   double tube_length) {
   if (paths.empty()) return {};
   Branching branching(std::move(paths), radius, occlusion, 0.0);
   const std::vector<TubePiece>& pieces = branching.pieces;
@@ -126,12 +125,12 @@ std::vector<TubeModel> join_likely_branches(std::vector<TubePath> paths, double 
   };
   if (links.size() == 1 && is_chance(links.front()) && are_of_few_lengths(pieces, branching.ends)) links.clear();
   const TreeJoiner joiner = branching.joiner();
-  std::vector<TubeModel> tubes;
+  BranchedTubes joining;
   for (Tree& tree : joiner.likely_trees(0.0)) {
     tree.whole_odds = tree.links.empty() ? CoverMargins::kMost : std::ranges::min(tree.link_odds);
-    tubes.push_back(joiner.tube_of(tree, branching.paths));
+    joining.tubes.push_back(joiner.tube_of(tree, branching.paths));
   }
-  return tubes;
+  return joining;
 }
 
 }  // namespace tubebin::modeling

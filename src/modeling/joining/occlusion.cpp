@@ -45,7 +45,8 @@ std::vector<OcclusionTest::View> OcclusionTest::views(const ModelingInput& input
   std::vector<std::uint32_t> finite;
   for (std::uint32_t i = 0; i < input.points.size(); ++i)
     if (cloud::is_finite(input.points[i])) finite.push_back(i);
-  for (const SourceView& view : views_of(input, projection, finite)) add(view.projection, view.points, view.spacing.metres);
+  for (const SourceView& view : views_of(input, projection, finite))
+    add(view.projection, view.points, view.spacing.metres);
   return views;
 }
 

@@ -148,9 +148,8 @@ ShapeJoining ShapeSearch::join(std::span<const std::size_t> chosen) const {
   std::vector<ShapeCopy> copies;
   for (const std::size_t k : chosen) {
     copies.insert(copies.end(), copies_[k].begin(), copies_[k].end());
-    result.longest = std::max(result.longest, polyline_length(shapes_[k]));
+    result.lengths.push_back(polyline_length(shapes_[k]));
   }
-  if (chosen.size() == 1) result.tube_length = result.longest;
   const CopyCover cover = cheapest_copies(sections_, copies, radius_);
   result.cost = cover.cost;
   std::vector<std::optional<std::size_t>> copy_of(sections_.size());

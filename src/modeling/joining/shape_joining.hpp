@@ -18,8 +18,7 @@ struct ShapeJoining {
   double whole_bends = 0.0;     ///< part of the pieces' sharp bends both sides of which are in one copy; 1 without any
   /// nats: -log of the scene's likelihood, but for what is the same for any shape; infinite before copies were chosen
   double cost = std::numeric_limits<double>::infinity();
-  double tube_length = 0.0;  ///< of the shape, metres; 0 where there are several
-  double longest = 0.0;      ///< of the shapes, metres
+  std::vector<double> lengths;  ///< of the shapes, metres
 };
 
 /// Where copies of `shapes`, centrelines by samples every half radius, explain pieces, of which there is at least one. Keeps

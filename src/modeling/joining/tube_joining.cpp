@@ -209,8 +209,8 @@ std::optional<ShapeJoining> with_common_shapes(const Cover& cover, const std::ve
 Joining with_rest(ShapeJoining joining, const OcclusionTest& occlusion, double tube_length) {
   std::ranges::move(join_pieces(joining.rest, occlusion, tube_length, false).paths, std::back_inserter(joining.paths));
   return {.paths = std::move(joining.paths),
-          .tube_length = joining.tube_length,
-          .longest_shape = joining.longest,
+          .lengths = std::move(joining.lengths),
+          .are_copies = true,
           .explained = joining.explained};
 }
 
@@ -218,7 +218,7 @@ Joining with_rest(ShapeJoining joining, const OcclusionTest& occlusion, double t
 
 Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion, double tube_length,
                     bool tries_shape) {
-  if (pieces.empty()) return {.paths = {}, .tube_length = tube_length, .tubes_branch = false};
+  if (pieces.empty()) return {};
   const JoinSearch search(pieces, occlusion);
   LengthModel lengths{.radius = pieces.front().radius};
   if (tube_length > 0.0) lengths.common = {tube_length};
@@ -230,10 +230,7 @@ Joining join_pieces(const std::vector<TubePiece>& pieces, const OcclusionTest& o
     if (auto alike = with_common_shapes(cover, pieces, occlusion))
       return with_rest(std::move(*alike), occlusion, tube_length);
   }
-  const std::vector<double>& common = cover.lengths.common;
-  return {.paths = paths_of(cover),
-          .tube_length = common.size() == 1 ? common.front() : 0.0,
-          .tubes_branch = search.tubes_branch()};
+  return {.paths = paths_of(cover), .lengths = cover.lengths.common, .tubes_branch = search.tubes_branch()};
 }
 
 Joining join_pieces_by_shapes(const std::vector<TubePiece>& pieces, const OcclusionTest& occlusion,

@@ -10,10 +10,10 @@ namespace tubebin::modeling {
 
 struct Joining {
   std::vector<TubePath> paths;
-  double tube_length = 0.0;    ///< metres: as given, or the common length of the scene's tubes; 0 where there is none
-  bool tubes_branch = false;   ///< enough pieces start on another's side (show_branches)
-  double longest_shape = 0.0;  ///< metres, of those that copies were joined by; 0: by none
-  double explained = 0.0;      ///< part of the pieces' length on copies of these
+  std::vector<double> lengths;  ///< metres, that tubes have in common: as given, or as found; none where there is none
+  bool tubes_branch = false;    ///< enough pieces start on another's side (show_branches)
+  bool are_copies = false;      ///< of shapes, whose lengths these are
+  double explained = 0.0;       ///< part of the pieces' length on copies
 };
 
 /// Chooses the chains of pieces that explain the scan best: each piece in one tube, joins by their likelihood, tubes of
