@@ -19,9 +19,10 @@ struct SolidCylinder {
   float reach_of(const cloud::Point& p, const Reach& reach) const {
     if (bridged) return static_cast<float>(reach.bridged) * radius;
     // A tenth of a radius is far more than a seen tube's course is off, and keeps clear of what the tube lies on.
-    const float along = (p - start).dot(axis), shallow = radius / 2.0f, wide = 1.1f * radius;
+    // Rounded ends lie inside the flat one by up to a radius.
+    const float along = (p - start).dot(axis), wide = 1.1f * radius;
     const bool is_on_axis = (p - start - along * axis).squaredNorm() < wide * wide;
-    const bool is_at_end = is_on_axis && ((flat_start && along < shallow) || (flat_end && along > length - shallow));
+    const bool is_at_end = is_on_axis && ((flat_start && along < radius) || (flat_end && along > length - radius));
     return static_cast<float>(is_at_end ? std::max(reach.end, reach.seen) : reach.seen) * radius;
   }
 

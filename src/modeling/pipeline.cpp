@@ -23,6 +23,7 @@
 #include "modeling/joining/tube_joining.hpp"
 #include "modeling/point_labels.hpp"
 #include "modeling/scene_found.hpp"
+#include "modeling/seen_ends.hpp"
 #include "tubebin/core/error.hpp"
 
 namespace tubebin::modeling {
@@ -378,6 +379,11 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   if (!background.is_known && options.method == ModelingMethod::centerline &&
       drop_doubtful(result.tubes, labels.labels))
     labels = label_points(cloud.points, result.tubes, background.noise);
+  if (options.method == ModelingMethod::centerline &&
+      reach_seen_ends(result.tubes, cloud.points, labels.labels, cloud.spacing)) {
+    round_tubes(result.tubes);
+    labels = label_points(cloud.points, result.tubes, background.noise);
+  }
   label(scene, std::move(labels), options, result);
   add_doubts(result);
   watch.lap(result.seconds.labeling);
