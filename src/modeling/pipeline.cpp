@@ -380,7 +380,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
       drop_doubtful(result.tubes, labels.labels))
     labels = label_points(cloud.points, result.tubes, background.noise);
   if (options.method == ModelingMethod::centerline &&
-      reach_seen_ends(result.tubes, cloud.points, labels.labels, cloud.spacing)) {
+      reach_seen_ends(result.tubes, cloud.points, labels.labels, cloud.spacing, result.lengths)) {
     round_tubes(result.tubes);
     labels = label_points(cloud.points, result.tubes, background.noise);
   }

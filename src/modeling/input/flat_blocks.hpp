@@ -1,7 +1,7 @@
 /// A scan's view in square blocks, and where their surface is flat.
 #pragma once
 
-#include <array>
+#include <cmath>
 #include <limits>
 
 #include "modeling/input/source_views.hpp"
