@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
+
+#include "tubebin/modeling/filtering.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -43,10 +44,6 @@ std::vector<PlaceBeyond> places_beyond(const PathEnd& end, double farthest, doub
   return places;
 }
 
-double points_of_disc(double radius, double spacing) {
-  return std::numbers::pi * radius * radius / (spacing * spacing);
-}
-
 /// How far beyond the end points go on without a gap, metres; none where they are few or go on too far.
 std::optional<double> seen_from_the_front(const PathEnd& end, double radius, double spacing,
                                           const std::vector<Vec3>& points) {
@@ -54,7 +51,7 @@ std::optional<double> seen_from_the_front(const PathEnd& end, double radius, dou
   const auto gap = std::ranges::adjacent_find(
       places, [&](const PlaceBeyond& a, const PlaceBeyond& b) { return b.along - a.along > kGap * radius; });
   if (gap != places.end()) places.erase(gap + 1, places.end());
-  if (places.empty() || static_cast<double>(places.size()) < kLeastPart * points_of_disc(radius, spacing))
+  if (places.empty() || static_cast<double>(places.size()) < kLeastPart * points_of_flat_end(radius, spacing))
     return std::nullopt;
   // Up to a radius before an end, points have its tube's label already.
   const bool begins_there = places.front().along < (1.0 + kGap) * radius;
@@ -79,7 +76,7 @@ std::optional<double> seen_again(const PathEnd& end, double radius, double spaci
   others -= static_cast<double>(std::ranges::count_if(places, [&](const PlaceBeyond& place) {
     return place.off < (1.0 - kOnSide) * radius && std::abs(place.along - farthest) < kOnSide * radius;
   }));
-  const bool is_side = on_side >= kLeastPart * points_of_disc(radius, spacing) && others < on_side / 4.0;
+  const bool is_side = on_side >= kLeastPart * points_of_flat_end(radius, spacing) && others < on_side / 4.0;
   return is_side ? std::optional(farthest) : std::nullopt;
 }
 

@@ -50,6 +50,9 @@ double normal_radius(double spacing, double radius);
 /// How many points show a stretch of tube that is fully visible, 2 r wide. Both and the points' spacing in metres.
 double points_of_visible_stretch(double radius, double length, double spacing);
 
+/// How many points show a flat end seen straight on. Its radius and the points' spacing in metres.
+double points_of_flat_end(double radius, double spacing);
+
 /// The projection of the scan: from the sensor toward what it saw.
 ViewProjection view_of(const ModelingInput& input);
 

@@ -48,8 +48,7 @@ std::optional<FlatEnd> find_flat_end(const Vec3& tip, const Vec3& outward, const
   std::vector<SurfacePoint> near = unexplained.near(tip, 2.5 * radius);
   std::erase_if(near, [&](const SurfacePoint& point) { return point.normal.dot(outward) <= 0.5; });
   // A tenth of the disc, at the density of points seen straight on, is enough to tell a plane.
-  const double disc = std::numbers::pi * radius * radius / (unexplained.spacing() * unexplained.spacing());
-  const auto least = std::max(disc / 10.0, 5.0);
+  const double least = std::max(points_of_flat_end(radius, unexplained.spacing()) / 10.0, 5.0);
   if (static_cast<double>(near.size()) < least) return std::nullopt;
 
   FlatEnd end{.center = tip, .outward = outward};

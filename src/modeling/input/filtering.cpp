@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "modeling/input/normals.hpp"
 #include "modeling/input/source_views.hpp"
@@ -90,6 +91,10 @@ double normal_radius(double spacing, double radius) {
 
 double points_of_visible_stretch(double radius, double length, double spacing) {
   return 2.0 * radius * length / (spacing * spacing);
+}
+
+double points_of_flat_end(double radius, double spacing) {
+  return std::numbers::pi * radius * radius / (spacing * spacing);
 }
 
 ViewProjection view_of(const ModelingInput& input) {

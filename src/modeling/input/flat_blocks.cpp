@@ -32,7 +32,7 @@ class Window {
 
   bool is_measured() const { return is_measured_; }
   const std::array<std::size_t, kSize * kSize>& members() const { return members_; }
-  FittedPlane plane() const { return FittedPlane(moments_); }
+  FittedPlane plane() const { return {moments_, residual_}; }
   double residual() const { return residual_; }
   /// The variance of the points about the window's plane, which takes three degrees of freedom, square metres.
   double variance() const { return residual_ * moments_.count / (moments_.count - 3.0); }
@@ -103,7 +103,7 @@ double plane_residual(const PointMoments& moments) {
 }
 
 /// The normal is the eigenvector of the smallest eigenvalue: square to all rows of what is left without it.
-FittedPlane::FittedPlane(const PointMoments& moments) : center(moments.mean()), mean_square(plane_residual(moments)) {
+FittedPlane::FittedPlane(const PointMoments& moments, double residual) : center(moments.mean()), mean_square(residual) {
   const Eigen::Matrix3d left = moments.covariance() - mean_square * Eigen::Matrix3d::Identity();
   for (int row = 0; row < 3; ++row) {
     const Vec3 across = left.row(row).cross(left.row((row + 1) % 3));

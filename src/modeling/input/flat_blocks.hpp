@@ -29,7 +29,9 @@ struct FittedPlane {
   double mean_square = std::numeric_limits<double>::infinity();  ///< as plane_residual() has it
 
   FittedPlane() = default;
-  explicit FittedPlane(const PointMoments& moments);
+  explicit FittedPlane(const PointMoments& moments) : FittedPlane(moments, plane_residual(moments)) {}
+  /// Where the residual is known.
+  FittedPlane(const PointMoments& moments, double residual);
 };
 
 /// Blocks of four by four points, where the whole of them is measured; one with six or more has a plane. Positions are from

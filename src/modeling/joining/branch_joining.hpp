@@ -10,7 +10,7 @@ namespace tubebin::modeling {
 
 struct BranchedTubes {
   std::vector<TubeModel> tubes;
-  double tube_length = 0.0;  ///< metres, that trees were found to have in common; 0 where there is none
+  double tube_length = 0.0;  ///< metres, that trees have in common: as given, or as found; 0 where there is none
 };
 
 /// The tubes, as sets of paths, that explain the scan best: links (branch_links.hpp) by their likelihood, and the length

@@ -1,0 +1,57 @@
+#include "modeling/joining/class_joining.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "modeling/joining/branch_joining.hpp"
+#include "modeling/joining/tube_joining.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+double length_of(const std::vector<TubePiece>& pieces) {
+  double length = 0.0;
+  for (const TubePiece& piece : pieces) length += piece.length();
+  return length;
+}
+
+/// Keeps ascending lengths that differ by more than what estimates are off, a radius.
+void add_lengths(const std::vector<double>& further, double radius, std::vector<double>& lengths) {
+  for (const double length : further)
+    if (std::ranges::none_of(lengths, [&](double known) { return std::abs(known - length) < radius; }))
+      lengths.push_back(length);
+  std::ranges::sort(lengths);
+}
+
+}  // namespace
+
+std::vector<TubeModel> join_classes(const std::vector<TubeClass>& classes, const OcclusionTest& scan,
+                                    const ModelingOptions& options, ModelingResult& result) {
+  std::vector<std::vector<Vec3>> told;
+  for (const TubeShape& shape : options.tube_shapes) told.push_back(centerline_of(shape));
+  if (options.tube_length > 0.0) result.lengths = {options.tube_length};
+  std::vector<TubeModel> tubes;
+  double seen = 0.0, explained = 0.0;  // metres
+  for (const TubeClass& found : classes) {
+    const OcclusionTest occlusion = scan.with_radius(found.radius);
+    Joining joining = told.empty() ? join_pieces(found.pieces, occlusion, options.tube_length)
+                                   : join_pieces_by_shapes(found.pieces, occlusion, told);
+    seen += length_of(found.pieces);
+    explained += joining.explained * length_of(found.pieces);
+    const double longest = joining.are_copies ? std::ranges::max(joining.lengths) : options.tube_length;
+    const auto join = joining.tubes_branch ? join_branches : join_likely_branches;
+    BranchedTubes branched = join(std::move(joining.paths), found.radius, occlusion, longest);
+    std::ranges::move(branched.tubes, std::back_inserter(tubes));
+    if (branched.tube_length > 0.0) joining.lengths = {branched.tube_length};
+    add_lengths(joining.lengths, found.radius, result.lengths);
+  }
+  if (!told.empty() && explained < seen / 2.0)
+    result.found.doubts.push_back(
+        fmt::format("{:.0f} % of what is seen of tubes lies on copies of the told shape", 100.0 * explained / seen));
+  return tubes;
+}
+
+}  // namespace tubebin::modeling
