@@ -16,6 +16,7 @@
 #include "modeling/input/background.hpp"
 #include "modeling/input/bin_finding.hpp"
 #include "modeling/input/bin_pose.hpp"
+#include "modeling/input/bin_rim.hpp"
 #include "modeling/input/grid_viewpoint.hpp"
 #include "modeling/input/hanging_tubes.hpp"
 #include "modeling/input/normals.hpp"
@@ -96,6 +97,14 @@ void move_to_foreground(const std::vector<std::uint32_t>& indices, Background& b
   background.set_aside = std::move(set_aside);
 }
 
+/// Moves points of the foreground, in its order.
+void set_aside(const std::vector<std::uint32_t>& indices, Background& background) {
+  std::vector<std::uint32_t> foreground;
+  std::ranges::set_difference(background.foreground, indices, std::back_inserter(foreground));
+  background.foreground = std::move(foreground);
+  background.set_aside.insert(background.set_aside.end(), indices.begin(), indices.end());
+}
+
 /// All of the background, and what of the foreground is none of `of_bin`'s.
 Background without_surroundings(Background background, const Background& of_bin) {
   std::vector<std::uint32_t> foreground, around;
@@ -159,22 +168,6 @@ void crop(Background& background, const ModelingInput& input, const ModelingOpti
   std::erase_if(background.foreground, [&](std::uint32_t i) { return !box.contains(input.points[i].cast<double>()); });
 }
 
-/// The upper sides of walls are mostly too narrow to be flat regions, and tubes lie on them: only what is on a tube's
-/// surface is the tube's.
-void label_rim(const BinFound& bin, const std::vector<cloud::Point>& points, const Background& background,
-               ModelingResult& result) {
-  const double tolerance = 5.0 * background.noise + background.spacing / 2.0;
-  std::vector<std::size_t> places;
-  std::vector<cloud::Point> on_rim;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (is_on_rim(bin, points[i].cast<double>(), tolerance)) {
-      places.push_back(i);
-      on_rim.push_back(points[i]);
-    }
-  const auto labels = label_set_aside(on_rim, result.tubes, std::max(background.noise, result.noise / 2.0));
-  for (std::size_t k = 0; k < places.size(); ++k) result.labels[places[k]] = labels[k];
-}
-
 /// Outliers and others that lie alone make a foreground's points seem farther apart than they lie in all of the scan (both
 /// metres; 0: unknown). At the edges of thin tubes they seem so by a seventh.
 double spacing_without_lone_points(double of_foreground, double of_scan) {
@@ -212,6 +205,10 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
                                                  .width = input.bin->width,
                                                  .height = input.bin->height})
                         : find_bin(background, found.up, input.points);
+  if (found.bin && !input.bin)
+    set_aside(points_on_rim(*found.bin, input.points, background.foreground,
+                            5.0 * background.noise + background.spacing / 2.0, background.spacing),
+              background);
   crop(background, input, options);
   FilteredCloud cloud = filter(input, projection, background.foreground, options.filtering, options.seed);
   cloud.spacing = spacing_without_lone_points(cloud.spacing, background.spacing / std::sqrt(options.filtering.ratio));
@@ -224,7 +221,6 @@ void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& opti
   result.noise = labels.noise;
   result.labels = std::move(labels.labels);
   result.source = std::move(cloud.source);
-  if (result.found.bin && !input.bin) label_rim(*result.found.bin, cloud.points, background, result);
   const auto unexplained = std::ranges::count(result.labels, cloud::Label{0});
   result.found.unexplained = static_cast<double>(unexplained) / static_cast<double>(result.labels.size());
   const bool adds = options.filtering.ratio >= 1.0 && !input.bin;

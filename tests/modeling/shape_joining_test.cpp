@@ -61,7 +61,7 @@ TEST(SampledCurve, FindsTheMotionBetweenTwoCurves) {
   const auto samples = smooth_samples(kU, kRadius / 2.0, kRadius);
   const auto there = moved(samples, motion);
   EXPECT_TRUE(best_motion(samples, there).isApprox(motion, 1e-9));
-  EXPECT_LT(distance_apart(samples, there, motion * turned(3.0, {0.002, 0, 0})), kRadius / 20.0);
+  EXPECT_LT(distance_apart(samples, there, 0, motion * turned(3.0, {0.002, 0, 0})), kRadius / 20.0);
   EXPECT_NEAR(sagitta(samples), kLeg, kRadius);
 }
 
@@ -117,6 +117,19 @@ TEST_F(ShapeJoiningUnderLid, JoinsWhatOneCopyExplains) {
     EXPECT_EQ(path.bridged.size() + 1, path.nodes.size());
     EXPECT_EQ(std::ranges::count(path.bridged, true), std::ssize(path.bridge_odds));
   }
+}
+
+TEST_F(ShapeJoiningUnderLid, GivesUpWhereMuchOfWhatIsSeenIsOfOtherShapes) {
+  Random random(3);
+  std::vector<TubePiece> pieces = {piece_along(moved(kU, turned(30.0, {-0.4, 0.3, 0})))};
+  for (int k = 0; k < 3; ++k) pieces.push_back(piece_along(random_tube(random)));
+  const std::vector<std::size_t> all = {0};
+  const ShapeJoining few = ShapeSearch(pieces, kShapes, occlusion(), 0.0).join(all);
+  EXPECT_EQ(few.paths.size(), 1u);
+  EXPECT_LT(few.explained, 0.5);
+  const ShapeJoining none = ShapeSearch(pieces, kShapes, occlusion(), 0.75).join(all);
+  EXPECT_TRUE(none.paths.empty());
+  EXPECT_EQ(none.explained, 0.0);
 }
 
 TEST_F(ShapeJoiningUnderLid, AnElbowsCopiesLeaveTheBendsOfLongerTubesInTwo) {

@@ -9,9 +9,10 @@
 namespace tubebin::modeling {
 namespace {
 
-/// A point's place across the axis of its stretch: angle about it, and distance beyond the radius.
+/// A point's place across the axis of its stretch: direction from it, and distance beyond the radius.
 struct AcrossPoint {
-  double angle = 0.0, excess = 0.0;
+  Eigen::Vector2d direction;
+  double excess = 0.0;
 };
 
 /// The piece's points by stretches of some radii, straight enough for one axis each.
@@ -41,10 +42,10 @@ std::vector<std::vector<AcrossPoint>> points_across(const TubePiece& piece, std:
       const Vec3 offset = p - axes[k].start;
       const double t = offset.dot(axes[k].along);
       if (t < 0.0 || t > axes[k].length) continue;
-      const double x = offset.dot(axes[k].side), y = offset.dot(axes[k].up);
-      const double excess = std::hypot(x, y) - piece.radius;
+      const Eigen::Vector2d across(offset.dot(axes[k].side), offset.dot(axes[k].up));
+      const double distance = across.norm(), excess = distance - piece.radius;
       if (std::abs(excess) > piece.radius / 3.0) continue;
-      stretches[k].push_back({.angle = std::atan2(y, x), .excess = excess});
+      stretches[k].push_back({.direction = across / distance, .excess = excess});
       break;
     }
   }
@@ -61,8 +62,7 @@ struct RadiusChange {
     Eigen::Matrix2d shifts = Eigen::Matrix2d::Identity() * 1e-6;
     Eigen::Vector2d mixed = Eigen::Vector2d::Zero(), right = Eigen::Vector2d::Zero();
     double sum = 0.0, own_squares = 0.0;
-    for (const auto& [angle, excess] : stretch) {
-      const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+    for (const auto& [direction, excess] : stretch) {
       shifts += direction * direction.transpose();
       mixed += direction;
       right += excess * direction;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "modeling/input/bin_rim.hpp"
+
 namespace tubebin::modeling {
 namespace {
 
@@ -12,7 +14,6 @@ constexpr std::size_t kSample = 40000, kDenseSample = 300000;
 constexpr double kLean = 0.26;      ///< the sine of 15 degrees
 constexpr double kAlong = 0.985;    ///< the cosine of 10 degrees
 constexpr double kOverhang = 0.02;  ///< metres that a wall may reach beyond where it should end
-constexpr double kThickestWall = 0.03;
 
 /// Of a wall, level and outward.
 Vec3 outward_of(const FlatRegion& wall, const Vec3& up) {
@@ -226,12 +227,6 @@ std::optional<BinFound> find_bin(const Background& background, const Vec3& up, s
     }
   }
   return best;
-}
-
-bool is_on_rim(const BinFound& bin, const Vec3& point, double tolerance) {
-  const Vec3 own = bin.world_from_bin.inverse() * point;
-  const Eigen::Array2d outside = own.head<2>().array().abs() - Eigen::Array2d(bin.length / 2.0, bin.width / 2.0);
-  return std::abs(own.z() - bin.height) < tolerance && (outside > -tolerance).any() && (outside < kThickestWall).all();
 }
 
 }  // namespace tubebin::modeling

@@ -14,7 +14,4 @@ namespace tubebin::modeling {
 /// where floor or other walls are out of sight. `up`: unit, against gravity. `points`: those of the scan.
 std::optional<BinFound> find_bin(const Background& background, const Vec3& up, std::span<const cloud::Point> points);
 
-/// Whether a point lies on top of the bin's walls, as far as `tolerance` (metres) lets one tell.
-bool is_on_rim(const BinFound& bin, const Vec3& point, double tolerance);
-
 }  // namespace tubebin::modeling

@@ -38,7 +38,7 @@ bool lies_on(std::vector<Vec3> piece, const std::vector<Vec3>& shape, double rad
       const Pose motion = best_motion(own, part);
       if (mean_squared_distance(own, part, motion) > 4.0 * radius * radius)
         continue;  // places along it are off by as much
-      if (distance_apart(piece, shape, motion) < agreed) return true;
+      if (distance_apart(piece, shape, first, motion) < agreed) return true;
     }
   }
   return false;

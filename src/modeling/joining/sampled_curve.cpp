@@ -60,16 +60,25 @@ double mean_squared_distance(std::span<const Vec3> from, std::span<const Vec3> t
   return squares / static_cast<double>(from.size());
 }
 
-double distance_apart(std::span<const Vec3> from, const std::vector<Vec3>& to, Pose motion) {
+double distance_apart(std::span<const Vec3> from, std::span<const Vec3> to, std::ptrdiff_t first, Pose motion) {
   constexpr int kMostRounds = 8;
+  constexpr std::ptrdiff_t kReach = 8;  // samples along the polyline that a place may be off by
+  const auto last = static_cast<std::ptrdiff_t>(to.size()) - 1;
+  const auto part_about = [&](std::size_t k) {
+    const std::ptrdiff_t place = first + static_cast<std::ptrdiff_t>(k);
+    const std::ptrdiff_t begin = std::clamp<std::ptrdiff_t>(place - kReach, 0, last);
+    const std::ptrdiff_t end = std::clamp<std::ptrdiff_t>(place + kReach, 0, last);
+    return to.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin) + 1);
+  };
   double squares = 0.0;
   std::vector<Vec3> nearest(from.size());
   for (int round = 0; round < kMostRounds; ++round) {
     const double before = squares;
     squares = 0.0;
     for (std::size_t k = 0; k < from.size(); ++k) {
-      nearest[k] = nearest_on_polyline(motion * from[k], to);
-      squares += (motion * from[k] - nearest[k]).squaredNorm();
+      const Vec3 place = motion * from[k];
+      nearest[k] = nearest_on_polyline(place, part_about(k));
+      squares += (place - nearest[k]).squaredNorm();
     }
     if (round > 0 && squares > 0.9 * before) break;
     motion = best_motion(from, nearest);

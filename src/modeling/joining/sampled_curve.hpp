@@ -1,6 +1,7 @@
 /// Centrelines by samples at equal steps, and how one lies on another.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -22,8 +23,8 @@ Pose best_motion(std::span<const Vec3> from, std::span<const Vec3> to);
 /// Of the pairs once `motion` has brought `from` to `to`, square metres.
 double mean_squared_distance(std::span<const Vec3> from, std::span<const Vec3> to, const Pose& motion);
 
-/// Root mean square, metres, of the distances of `from` from the polyline `to` once `motion` has brought it there and
-/// iterative closest points (Besl and McKay 1992) nearer still.
-double distance_apart(std::span<const Vec3> from, const std::vector<Vec3>& to, Pose motion);
+/// Root mean square, metres, of the distances of `from` from the polyline `to` once `motion` has brought it there, sample k
+/// to about the place of sample `first` + k, and iterative closest points (Besl and McKay 1992) nearer still.
+double distance_apart(std::span<const Vec3> from, std::span<const Vec3> to, std::ptrdiff_t first, Pose motion);
 
 }  // namespace tubebin::modeling

@@ -27,7 +27,11 @@ class CopyFinder {
  public:
   CopyFinder(std::span<const Section> sections, const std::vector<Vec3>& shape, double radius,
              const OcclusionTest& occlusion)
-      : sections_(sections), shape_(shape), radius_(radius), occlusion_(occlusion) {
+      : sections_(sections),
+        shape_(shape),
+        radius_(radius),
+        occlusion_(occlusion),
+        is_explained_(sections.size(), false) {
     for (std::size_t k = 0; k < shape.size(); ++k) {
       const std::size_t before = k == 0 ? 0 : k - 1, after = std::min(k + 1, shape.size() - 1);
       tangents_.push_back((shape[after] - shape[before]).normalized());
@@ -35,21 +39,20 @@ class CopyFinder {
     }
   }
 
-  /// By the longest sections first, until it takes too long.
-  std::vector<ShapeCopy> find() {
-    std::vector<const Section*> seeds;
-    for (const Section& section : sections_)
-      if (section.length >= 3.0 * radius_) seeds.push_back(&section);
-    std::ranges::stable_sort(seeds, std::greater<>(), &Section::length);
-    for (const Section* seed : seeds) {
-      if (tests_ > kMostTests) break;
-      std::vector<Vec3> samples = seed->samples;
-      place_along(samples);
-      std::ranges::reverse(samples);
-      place_along(samples);
-    }
+  /// Copies of which this section is a part, unless it takes too long.
+  void add_copies_at(const Section& section) {
+    if (tests_ > kMostTests) return;
+    std::vector<Vec3> samples = section.samples;
+    place_along(samples);
+    std::ranges::reverse(samples);
+    place_along(samples);
+  }
+
+  bool explains(std::uint32_t section) const { return is_explained_[section]; }
+
+  std::vector<ShapeCopy> copies() const {
     std::vector<ShapeCopy> copies;
-    for (auto& [explained, copy] : copies_) copies.push_back(std::move(copy));
+    for (const auto& [explained, copy] : copies_) copies.push_back(copy);
     return copies;
   }
 
@@ -110,6 +113,7 @@ class CopyFinder {
     if (misfit + hidden_cost(copy, {}) > kCopyCostLimit) return;
     copy.cost = misfit + hidden_cost(copy, sections_beside(copy));
     if (copy.cost > kCopyCostLimit) return;
+    for (const PlacedSection& each : copy.placed) is_explained_[each.section] = true;
     const auto [known, is_new] = copies_.try_emplace(places_of(copy.placed), copy);
     if (!is_new && copy.cost < known->second.cost) known->second = std::move(copy);
   }
@@ -271,16 +275,39 @@ class CopyFinder {
   Eigen::AlignedBox3d box_;     ///< of the shape
   double radius_;
   const OcclusionTest& occlusion_;
+  std::vector<bool> is_explained_;  ///< of each section: it is a part of a copy
   std::size_t tests_ = 0;
   std::map<Places, int> tries_;  ///< from poses that seemed to explain these sections
   std::map<Places, ShapeCopy> copies_;
 };
 
+/// Those that are long enough to say where a copy may lie, the longest first.
+std::vector<std::uint32_t> seeds_of(std::span<const Section> sections, double radius) {
+  std::vector<std::uint32_t> seeds;
+  for (std::uint32_t k = 0; k < sections.size(); ++k)
+    if (sections[k].length >= 3.0 * radius) seeds.push_back(k);
+  std::ranges::stable_sort(seeds, std::greater<>(), [&](std::uint32_t k) { return sections[k].length; });
+  return seeds;
+}
+
 }  // namespace
 
-std::vector<ShapeCopy> find_shape_copies(std::span<const Section> sections, const std::vector<Vec3>& shape,
-                                         double radius, const OcclusionTest& occlusion) {
-  return CopyFinder(sections, shape, radius, occlusion).find();
+std::vector<std::vector<ShapeCopy>> find_shape_copies(std::span<const Section> sections,
+                                                      std::span<const std::vector<Vec3>> shapes, double radius,
+                                                      const OcclusionTest& occlusion, double least_explained) {
+  double spare = 0.0;  // metres of sections that may be in no copy
+  for (const Section& section : sections) spare += (1.0 - least_explained) * section.length;
+  std::vector<CopyFinder> finders;
+  for (const std::vector<Vec3>& shape : shapes) finders.emplace_back(sections, shape, radius, occlusion);
+  for (const std::uint32_t seed : seeds_of(sections, radius)) {
+    for (CopyFinder& finder : finders) finder.add_copies_at(sections[seed]);
+    const auto explains = [&](const CopyFinder& finder) { return finder.explains(seed); };
+    if (std::ranges::none_of(finders, explains)) spare -= sections[seed].length;
+    if (spare < 0.0) return std::vector<std::vector<ShapeCopy>>(shapes.size());
+  }
+  std::vector<std::vector<ShapeCopy>> copies;
+  for (const CopyFinder& finder : finders) copies.push_back(finder.copies());
+  return copies;
 }
 
 bool lies_on_copy(const Section& section, const ShapeCopy& copy, double radius) {

@@ -34,10 +34,12 @@ struct ShapeCopy {
 /// A copy that costs more is ruled out.
 constexpr double kCopyCostLimit = 9.0;
 
-/// All copies of `shape`, a centreline by samples every half radius, that explain sections enough to know where they lie, the
-/// best for each set of sections. Keeps a reference to `shape`.
-std::vector<ShapeCopy> find_shape_copies(std::span<const Section> sections, const std::vector<Vec3>& shape,
-                                         double radius, const OcclusionTest& occlusion);
+/// All copies of each of `shapes`, centrelines by samples every half radius, that explain sections enough to know where they
+/// lie, the best for each set of sections. None at all as soon as long sections alone leave less than `least_explained` (0 to 1)
+/// of what is seen to copies. Keeps references to the shapes.
+std::vector<std::vector<ShapeCopy>> find_shape_copies(std::span<const Section> sections,
+                                                      std::span<const std::vector<Vec3>> shapes, double radius,
+                                                      const OcclusionTest& occlusion, double least_explained);
 
 /// Whether the curve lies on the copy from one end to the other, as far as fits tell.
 bool lies_on_copy(const Section& section, const ShapeCopy& copy, double radius);

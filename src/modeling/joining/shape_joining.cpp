@@ -137,11 +137,11 @@ double whole_bends_of(const std::vector<Section>& sections, const std::vector<st
 }  // namespace
 
 ShapeSearch::ShapeSearch(const std::vector<TubePiece>& pieces, std::span<const std::vector<Vec3>> shapes,
-                         const OcclusionTest& occlusion)
-    : shapes_(shapes), radius_(pieces.front().radius), sections_(sections_of(pieces)) {
-  for (const std::vector<Vec3>& shape : shapes)
-    copies_.push_back(find_shape_copies(sections_, shape, radius_, occlusion));
-}
+                         const OcclusionTest& occlusion, double least_explained)
+    : shapes_(shapes),
+      radius_(pieces.front().radius),
+      sections_(sections_of(pieces)),
+      copies_(find_shape_copies(sections_, shapes, radius_, occlusion, least_explained)) {}
 
 ShapeJoining ShapeSearch::join(std::span<const std::size_t> chosen) const {
   ShapeJoining result;
@@ -178,7 +178,7 @@ ShapeJoining join_by_shapes(const std::vector<TubePiece>& pieces, std::span<cons
   if (pieces.empty()) return {};
   std::vector<std::size_t> all(shapes.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  return ShapeSearch(pieces, shapes, occlusion).join(all);
+  return ShapeSearch(pieces, shapes, occlusion, 0.0).join(all);
 }
 
 }  // namespace tubebin::modeling

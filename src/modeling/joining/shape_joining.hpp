@@ -21,12 +21,12 @@ struct ShapeJoining {
   std::vector<double> lengths;  ///< of the shapes, metres
 };
 
-/// Where copies of `shapes`, centrelines by samples every half radius, explain pieces, of which there is at least one. Keeps
-/// references to the shapes.
+/// Where copies of `shapes`, centrelines by samples every half radius, explain pieces, of which there is at least one; nowhere
+/// where they leave more than a part of 1 - `least_explained` of these. Keeps references to the shapes.
 class ShapeSearch {
  public:
   ShapeSearch(const std::vector<TubePiece>& pieces, std::span<const std::vector<Vec3>> shapes,
-              const OcclusionTest& occlusion);
+              const OcclusionTest& occlusion, double least_explained);
 
   /// Chooses the copies of the shapes with these indices that explain the pieces best: each piece, or its part between two
   /// sharp bends, in one copy.

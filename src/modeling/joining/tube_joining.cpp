@@ -25,6 +25,8 @@ constexpr std::size_t kNodeLimit = 1000;
 /// A second kind of part makes the scan e^40 times likelier or more where it shows; a part of the first kind that is seen in
 /// part, and taken for a kind of its own, e^12 times at most (piles of five to fourteen rods).
 constexpr double kFurtherShapeGain = 20.0;
+/// Of all that is seen of tubes.
+constexpr double kLeastExplained = 0.75;
 
 /// What may be joined.
 class JoinSearch {
@@ -193,7 +195,7 @@ std::optional<ShapeJoining> with_common_shapes(const Cover& cover, const std::ve
                                                const OcclusionTest& occlusion) {
   const std::vector<std::vector<Vec3>> shapes = possible_shapes(seen_tubes(cover), pieces);
   if (shapes.empty()) return std::nullopt;
-  const ShapeSearch search(pieces, shapes, occlusion);
+  const ShapeSearch search(pieces, shapes, occlusion, kLeastExplained);
   ShapeSet best, larger = with_further_shape({}, search, shapes.size());
   while (larger.joining.cost < best.joining.cost - kFurtherShapeGain) {
     best = std::move(larger);
@@ -201,7 +203,7 @@ std::optional<ShapeJoining> with_common_shapes(const Cover& cover, const std::ve
   }
   const ShapeJoining& joining = best.joining;
   const double least_whole = best.shapes.size() > 1 ? 0.9 : 0.625;
-  if (joining.explained < 0.75 || joining.whole_bends < least_whole) return std::nullopt;
+  if (joining.explained < kLeastExplained || joining.whole_bends < least_whole) return std::nullopt;
   return std::move(best.joining);
 }
 

@@ -1,0 +1,53 @@
+#include "modeling/input/bin_rim.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tubebin::modeling {
+namespace {
+
+constexpr double kSpacing = 0.001, kWall = 0.004;  // metres
+
+const BinFound kBin{
+    .world_from_bin = make_pose(Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())), {0.3, -0.2, 1.1}),
+    .length = 0.3,
+    .width = 0.2,
+    .height = 0.1};
+
+struct Scan {
+  std::vector<cloud::Point> points;
+  std::vector<std::uint32_t> indices;
+
+  void add(double x, double y, double z) {
+    indices.push_back(static_cast<std::uint32_t>(points.size()));
+    points.push_back((kBin.world_from_bin * Vec3(x, y, z)).cast<float>());
+  }
+  /// The upper sides of the walls, of thickness `wall`; every `step`th row of them.
+  void add_rim(double wall, int step) {
+    const double x_out = kBin.length / 2.0 + wall, y_out = kBin.width / 2.0 + wall;
+    int row = 0;
+    for (double x = -x_out + kSpacing / 2.0; x < x_out; x += kSpacing, ++row)
+      for (double y = -y_out + kSpacing / 2.0; y < y_out; y += kSpacing)
+        if ((std::abs(x) > kBin.length / 2.0 || std::abs(y) > kBin.width / 2.0) && row % step == 0)
+          add(x, y, kBin.height);
+  }
+};
+
+TEST(BinRim, IsAsWideAsItSurroundsTheBin) {
+  Scan scan;
+  scan.add_rim(kWall, 1);
+  const std::vector<std::uint32_t> rim = scan.indices;
+  // A level tube's upper side at the same height, in the bin and far over its wall; and points on the floor.
+  for (double x = 0.0; x < 0.2; x += kSpacing)
+    if (std::abs(x - kBin.length / 2.0) > 2.0 * kWall) scan.add(x, 0.0, kBin.height);
+  for (double x = 0.0; x < 0.1; x += kSpacing) scan.add(x, 0.05, 0.0);
+  EXPECT_EQ(points_on_rim(kBin, scan.points, scan.indices, 0.0005, kSpacing), rim);
+}
+
+TEST(BinRim, IsNotWhatLiesHereAndThere) {
+  Scan scan;
+  scan.add_rim(kWall, 10);
+  EXPECT_TRUE(points_on_rim(kBin, scan.points, scan.indices, 0.0005, kSpacing).empty());
+}
+
+}  // namespace
+}  // namespace tubebin::modeling
