@@ -49,7 +49,9 @@ class BinsOnFloor {
       if (std::abs(region.plane.normal.dot(up_)) < kLean && floor.plane.height(region.center) > 0.0)
         standing_.push_back(&region);
     if (standing_.size() < 2) return;
-    for_sample(kSample, [&](const Vec3& p) { sample_.push_back(p); });
+    for (std::size_t i = 0; i < points.size(); i += points.size() / kSample + 1)
+      if (cloud::is_finite(points[i])) sample_.push_back(points[i].cast<double>());
+    for (std::size_t i = 0; i < points.size(); i += dense_stride()) heights_.push_back(height(points[i].cast<double>()));
   }
 
   std::vector<BinFound> find() const {
@@ -67,11 +69,7 @@ class BinsOnFloor {
   }
 
  private:
-  void for_sample(std::size_t size, const auto& use) const {
-    const std::size_t stride = points_.size() / size + 1;
-    for (std::size_t i = 0; i < points_.size(); i += stride)
-      if (cloud::is_finite(points_[i])) use(points_[i].cast<double>());
-  }
+  std::size_t dense_stride() const { return points_.size() / kDenseSample + 1; }
 
   double height(const Vec3& p) const { return floor_.plane.height(p); }
 
@@ -178,13 +176,14 @@ class BinsOnFloor {
     const auto columns = static_cast<std::size_t>(2.0 * half / along_step) + 1;
     const auto rows = static_cast<std::size_t>(kFarthest / step);
     std::vector<bool> is_seen(rows * columns, false);
-    for_sample(kDenseSample, [&](const Vec3& p) {
-      if (std::abs(height(p) - top) > kOverhang / 4.0) return;
+    for (std::size_t k = 0; k < heights_.size(); ++k) {
+      if (!(std::abs(heights_[k] - top) < kOverhang / 4.0)) continue;
+      const Vec3 p = points_[k * dense_stride()].cast<double>();
       const double distance = (p - place).dot(outward), aside = (p - opposite.center).dot(along) + half;
-      if (distance < 0.0 || distance >= kFarthest || aside < 0.0 || aside >= 2.0 * half) return;
+      if (distance < 0.0 || distance >= kFarthest || aside < 0.0 || aside >= 2.0 * half) continue;
       is_seen[static_cast<std::size_t>(distance / step) * columns + static_cast<std::size_t>(aside / along_step)] =
           true;
-    });
+    }
     for (std::size_t row = 0; row < rows; ++row) {
       const auto first = is_seen.begin() + static_cast<std::ptrdiff_t>(row * columns);
       const auto count = std::count(first, first + static_cast<std::ptrdiff_t>(columns), true);
@@ -201,7 +200,8 @@ class BinsOnFloor {
   double spacing_;
   std::span<const cloud::Point> points_;
   std::vector<const FlatRegion*> standing_;
-  std::vector<Vec3> sample_;  ///< of the points
+  std::vector<Vec3> sample_;     ///< of the points
+  std::vector<double> heights_;  ///< above the floor, of every dense_stride()th point; not a number where that is none
 };
 
 std::ptrdiff_t points_in(const BinFound& bin, const Background& background, std::span<const cloud::Point> points) {

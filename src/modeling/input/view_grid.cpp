@@ -34,19 +34,17 @@ struct Extent {
 };
 
 /// How many cells of this size hold a point.
-std::size_t count_occupied(const ViewProjection::Images& images, const Extent& extent, float cell) {
-  const auto columns = static_cast<std::size_t>((extent.u_max - extent.u_min) / cell) + 1;
-  const auto rows = static_cast<std::size_t>((extent.v_max - extent.v_min) / cell) + 1;
-  std::vector<bool> is_occupied(columns * rows, false);
-  std::size_t count = 0;
+std::ptrdiff_t count_occupied(const ViewProjection::Images& images, const Extent& extent, float cell) {
+  const int columns = static_cast<int>((extent.u_max - extent.u_min) / cell) + 1;
+  const int rows = static_cast<int>((extent.v_max - extent.v_min) / cell) + 1;
+  std::vector<char> is_occupied(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0);
   const float per_cell = 1.0f / cell;
   for (std::size_t i = 0; i < images.size(); ++i) {
-    const auto column = std::min(static_cast<std::size_t>((images.u[i] - extent.u_min) * per_cell), columns - 1);
-    const auto row = std::min(static_cast<std::size_t>((images.v[i] - extent.v_min) * per_cell), rows - 1);
-    auto occupied = is_occupied[row * columns + column];
-    if (!occupied) occupied = true, ++count;
+    const int column = std::min(static_cast<int>((images.u[i] - extent.u_min) * per_cell), columns - 1);
+    const int row = std::min(static_cast<int>((images.v[i] - extent.v_min) * per_cell), rows - 1);
+    is_occupied[static_cast<std::size_t>(row * columns + column)] = 1;
   }
-  return count;
+  return std::ranges::count(is_occupied, 1);
 }
 
 }  // namespace
@@ -109,7 +107,9 @@ PointSpacing estimate_spacing(const ViewProjection::Images& images) {
     area = static_cast<double>(count_occupied(images, extent, static_cast<float>(cell))) * cell * cell;
     cell = std::sqrt(area * kPointsPerCell / count);
   }
-  std::vector<float> ranges = images.range;
+  constexpr std::size_t kSample = 1 << 16;
+  std::vector<float> ranges;
+  for (std::size_t i = 0; i < images.size(); i += images.size() / kSample + 1) ranges.push_back(images.range[i]);
   const double angle = std::sqrt(area / count);
   return {.angle = angle, .metres = double(median(ranges)) * angle};
 }
