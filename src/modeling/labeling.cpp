@@ -73,8 +73,8 @@ class CylinderGrid {
       for (const cloud::Point& end : {c.start, cloud::Point(c.start + c.length * c.axis)})
         box_.extend(end - cloud::Point::Constant(pad)).extend(end + cloud::Point::Constant(pad));
     }
-    // Cubes about as wide as a tube hold few cylinders each; no more of them than a few per point of a large cloud.
-    constexpr float kMostCubes = 1 << 21;
+    // Cubes about as wide as a tube hold few cylinders each; more of them than this cost more time than larger ones.
+    constexpr float kMostCubes = 1 << 18;
     const auto cubes_along = [&] { return Eigen::Array3f((box_.sizes() / cube_).array().floor() + 1.0f); };
     cube_ = widest;
     while (cubes_along().prod() > kMostCubes) cube_ *= 1.25f;

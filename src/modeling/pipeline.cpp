@@ -227,6 +227,7 @@ void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& opti
   if (!adds && !options.label_all) return;
 
   std::vector<cloud::Point> points;
+  points.reserve(background.set_aside.size());
   for (const std::uint32_t i : background.set_aside) points.push_back(input.points[i]);
   const auto set_aside = label_set_aside(points, result.tubes, std::max(background.noise, labels.noise / 2.0));
   for (std::size_t k = 0; adds && k < points.size(); ++k) {
