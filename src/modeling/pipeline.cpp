@@ -21,6 +21,7 @@
 #include "modeling/input/hanging_tubes.hpp"
 #include "modeling/input/normals.hpp"
 #include "modeling/joining/class_joining.hpp"
+#include "modeling/mixed_pixels.hpp"
 #include "modeling/point_labels.hpp"
 #include "modeling/scene_found.hpp"
 #include "modeling/seen_ends.hpp"
@@ -339,6 +340,8 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
     round_tubes(result.tubes);
     labels = label_points(cloud.points, result.tubes, background.noise);
   }
+  if (background.is_known && options.method == ModelingMethod::centerline)
+    label_mixed_pixels(cloud, projection, result.tubes, labels.labels);
   label(scene, std::move(labels), options, result);
   add_doubts(result);
   watch.lap(result.seconds.labeling);

@@ -183,6 +183,21 @@ TEST(BinPose, IsRefinedByFloorAndWalls) {
   ASSERT_TRUE(pose.has_value());
   EXPECT_LT((pose->translation() - truth.translation()).norm(), 1e-5);
   EXPECT_LT((pose->linear() - truth.linear()).norm(), 1e-4);
+
+  // Without the wall's region, its points put the bin there as well; not those of something that lies before it.
+  const std::vector<FlatRegion> without = {regions[0], regions[2]};
+  for (const bool is_wall : {true, false}) {
+    std::vector<cloud::Point> points;
+    for (double along = -0.1; along < 0.1; along += 0.002)
+      for (double up = 0.02; up < 0.15; up += 0.01)
+        points.push_back((truth * Vec3(is_wall ? -x : -x + 0.01 * std::cos(100.0 * along), along, up)).cast<float>());
+    input.points = points;
+    const auto by_layer = refined_bin_pose(input, without);
+    ASSERT_TRUE(by_layer.has_value());
+    const double off = (by_layer->translation() - truth.translation()).norm();
+    if (is_wall) EXPECT_LT(off, 1e-3);
+    else EXPECT_GT(off, 5e-3);
+  }
   for (FlatRegion& moved : regions)
     moved.center += Vec3(1, 0, 1), moved.plane.offset = moved.plane.normal.dot(moved.center);
   EXPECT_FALSE(refined_bin_pose(input, regions).has_value());  // that is another bin

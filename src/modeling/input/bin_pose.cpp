@@ -1,9 +1,11 @@
 #include "modeling/input/bin_pose.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace tubebin::modeling {
 namespace {
@@ -27,22 +29,22 @@ bool is_before_face(const scene::Bin& bin, const Vec3& p) {
          p.z() > -kBeside && p.z() < bin.height - kBeside;
 }
 
-/// A region's corner and the face it should lie on, in the bin's frame.
+/// A place that was seen and the face it should lie on, in the bin's frame.
 struct Constraint {
-  Vec3 corner;
+  Vec3 place;
   const Plane* face;
 };
 
-/// The small motion that brings the corners onto their faces: least squares, one Gauss-Newton step. Where no wall is seen,
+/// The small motion that brings the places onto their faces: least squares, one Gauss-Newton step. Where no wall is seen,
 /// nothing moves the bin along.
 Pose small_motion(const std::vector<Constraint>& constraints) {
   Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Identity() * 1e-9;
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
-  for (const auto& [corner, face] : constraints) {
+  for (const auto& [place, face] : constraints) {
     Eigen::Matrix<double, 6, 1> row;
-    row << corner.cross(face->normal), face->normal;
+    row << place.cross(face->normal), face->normal;
     normal_matrix += row * row.transpose();
-    right -= row * face->height(corner);
+    right -= row * face->height(place);
   }
   const Eigen::Matrix<double, 6, 1> motion = normal_matrix.ldlt().solve(right);
   const double angle = motion.head<3>().norm();
@@ -50,6 +52,52 @@ Pose small_motion(const std::vector<Constraint>& constraints) {
   if (angle > 0.0) pose.linear() = Eigen::AngleAxisd(angle, motion.head<3>() / angle).toRotationMatrix();
   pose.translation() = motion.tail<3>();
   return pose;
+}
+
+/// Corners of those regions that may be the face.
+std::vector<Constraint> corners_on(const Plane& face, const scene::Bin& bin, const Pose& bin_from_world,
+                                   const std::vector<FlatRegion>& regions) {
+  std::vector<Constraint> corners;
+  for (const FlatRegion& region : regions) {
+    const Vec3 normal = bin_from_world.linear() * region.plane.normal, center = bin_from_world * region.center;
+    if (normal.dot(face.normal) < kParallelWall || std::abs(face.height(center)) > kFarthestOff) continue;
+    if (!is_before_face(bin, center)) continue;
+    for (const double a : {-1.0, 1.0})
+      for (const double b : {-1.0, 1.0})
+        corners.push_back({bin_from_world * Vec3(region.center + a * region.half_extents[0] * region.axes[0] +
+                                                 b * region.half_extents[1] * region.axes[1]),
+                           &face});
+  }
+  return corners;
+}
+
+/// The middle of the points that lie closest about one plane beside the face, where these are most of what is beside it: walls
+/// that are seen at a flat angle, or between tubes, are no flat regions.
+std::optional<Constraint> layer_beside(const Plane& face, const scene::Bin& bin, const std::vector<Vec3>& points) {
+  constexpr double kThickness = 0.002;  // metres
+  constexpr std::size_t kFew = 50;
+  std::vector<std::pair<double, Vec3>> beside;
+  for (const Vec3& p : points)
+    if (const double height = face.height(p); std::abs(height) < kFarthestOff / 2.0 && is_before_face(bin, p))
+      beside.emplace_back(height, p);
+  std::ranges::sort(beside, {}, &std::pair<double, Vec3>::first);
+  std::span<const std::pair<double, Vec3>> most;
+  for (std::size_t first = 0, end = 0; first < beside.size(); ++first) {
+    while (end < beside.size() && beside[end].first < beside[first].first + kThickness) ++end;
+    if (end - first > most.size()) most = std::span(beside).subspan(first, end - first);
+  }
+  if (most.size() < kFew || 2 * most.size() < beside.size()) return std::nullopt;
+  Vec3 sum = Vec3::Zero();
+  for (const auto& [height, p] : most) sum += p;
+  return Constraint{sum / static_cast<double>(most.size()), &face};
+}
+
+std::vector<Vec3> sampled_points(const ModelingInput& input) {
+  constexpr std::size_t kSample = 50000;
+  std::vector<Vec3> sample;
+  for (std::size_t i = 0; i < input.points.size(); i += input.points.size() / kSample + 1)
+    if (cloud::is_finite(input.points[i])) sample.push_back(input.points[i].cast<double>());
+  return sample;
 }
 
 }  // namespace
@@ -78,23 +126,25 @@ bool bin_is_in_place(const ModelingInput& input, double tolerance) {
 std::optional<Pose> refined_bin_pose(const ModelingInput& input, const std::vector<FlatRegion>& regions) {
   constexpr int kSteps = 3;
   const auto faces = inner_planes(*input.bin);
+  const std::vector<Vec3> sample = sampled_points(input);
   Pose world_from_bin = input.world_from_bin;
   for (int step = 0; step < kSteps; ++step) {
     const Pose bin_from_world = world_from_bin.inverse();
     std::vector<Constraint> constraints;
-    for (const FlatRegion& region : regions) {
-      const Vec3 normal = bin_from_world.linear() * region.plane.normal, center = bin_from_world * region.center;
-      for (const Plane& face : faces) {
-        if (normal.dot(face.normal) < kParallelWall || std::abs(face.height(center)) > kFarthestOff) continue;
-        if (!is_before_face(*input.bin, center)) continue;
-        for (const double a : {-1.0, 1.0})
-          for (const double b : {-1.0, 1.0})
-            constraints.push_back({bin_from_world * Vec3(region.center + a * region.half_extents[0] * region.axes[0] +
-                                                         b * region.half_extents[1] * region.axes[1]),
-                                   &face});
-      }
+    std::vector<const Plane*> others;
+    for (const Plane& face : faces) {
+      const std::vector<Constraint> corners = corners_on(face, *input.bin, bin_from_world, regions);
+      constraints.insert(constraints.end(), corners.begin(), corners.end());
+      if (corners.empty()) others.push_back(&face);
     }
     if (constraints.empty()) return std::nullopt;
+    // Regions turn the bin first: a plane that leans is no thin layer.
+    if (step > 0) {
+      std::vector<Vec3> points;
+      for (const Vec3& p : sample) points.push_back(bin_from_world * p);
+      for (const Plane* face : others)
+        if (const auto layer = layer_beside(*face, *input.bin, points)) constraints.push_back(*layer);
+    }
     world_from_bin = world_from_bin * small_motion(constraints).inverse();
   }
   return world_from_bin;

@@ -14,7 +14,7 @@ namespace tubebin::modeling {
 bool bin_is_in_place(const ModelingInput& input, double tolerance);
 
 /// The pose (world_from_bin) that puts the input's bin onto flat regions of the cloud, from the told one, which may be off
-/// by 30 mm and 10 degrees. None where no region is one of its faces.
+/// by 30 mm and 10 degrees, and its other faces onto the layers of points beside them. None where no region is one of its faces.
 std::optional<Pose> refined_bin_pose(const ModelingInput& input, const std::vector<FlatRegion>& regions);
 
 }  // namespace tubebin::modeling
