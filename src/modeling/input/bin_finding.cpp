@@ -51,7 +51,8 @@ class BinsOnFloor {
     if (standing_.size() < 2) return;
     for (std::size_t i = 0; i < points.size(); i += points.size() / kSample + 1)
       if (cloud::is_finite(points[i])) sample_.push_back(points[i].cast<double>());
-    for (std::size_t i = 0; i < points.size(); i += dense_stride()) heights_.push_back(height(points[i].cast<double>()));
+    for (std::size_t i = 0; i < points.size(); i += dense_stride())
+      heights_.push_back(height(points[i].cast<double>()));
   }
 
   std::vector<BinFound> find() const {
