@@ -85,7 +85,7 @@ double tubes_of_shape(const Curve& shape, const std::vector<Curve>& pieces, doub
 std::vector<std::vector<Vec3>> possible_shapes(std::span<const std::vector<Vec3>> tubes,
                                                std::span<const TubePiece> pieces) {
   constexpr std::size_t kMost = 5;
-  constexpr double kNearlyTwo = 1.75, kAndAHalf = 1.5;  // tubes
+  constexpr double kNearlyTwo = 1.75, kOneAndMore = 1.25;  // tubes
   if (pieces.empty()) return {};
   const double radius = pieces.front().radius;
   const std::vector<Curve> bent = bent_pieces(pieces, radius);
@@ -96,7 +96,7 @@ std::vector<std::vector<Vec3>> possible_shapes(std::span<const std::vector<Vec3>
     if (sagitta(shape.samples) < 4.0 * radius) continue;
     const double made_up = tubes_of_shape(shape, bent, radius);
     most = std::max(most, made_up);
-    if (made_up >= kAndAHalf) common.push_back(std::move(shape));
+    if (made_up >= kOneAndMore) common.push_back(std::move(shape));
   }
   if (most < kNearlyTwo) return {};
   // What is seen of a tube is a part of its shape.
