@@ -219,6 +219,8 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
 /// Labels of the filtered points, and of those that a plane took from a tube.
 void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& options, ModelingResult& result) {
   auto& [measured, input, found, projection, background, cloud] = scene;
+  if (background.is_known && options.method == ModelingMethod::centerline)
+    label_mixed_pixels(cloud, projection, result.tubes, labels.labels);
   result.noise = labels.noise;
   result.labels = std::move(labels.labels);
   result.source = std::move(cloud.source);
@@ -340,8 +342,6 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
     round_tubes(result.tubes);
     labels = label_points(cloud.points, result.tubes, background.noise);
   }
-  if (background.is_known && options.method == ModelingMethod::centerline)
-    label_mixed_pixels(cloud, projection, result.tubes, labels.labels);
   label(scene, std::move(labels), options, result);
   add_doubts(result);
   watch.lap(result.seconds.labeling);
