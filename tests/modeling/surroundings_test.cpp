@@ -186,8 +186,9 @@ TEST(BinPose, IsRefinedByFloorAndWalls) {
 
   // Without the wall's region, its points put the bin there as well; not those of something that lies before it.
   const std::vector<FlatRegion> without = {regions[0], regions[2]};
+  std::vector<cloud::Point> points;
   for (const bool is_wall : {true, false}) {
-    std::vector<cloud::Point> points;
+    points.clear();
     for (double along = -0.1; along < 0.1; along += 0.002)
       for (double up = 0.02; up < 0.15; up += 0.01)
         points.push_back((truth * Vec3(is_wall ? -x : -x + 0.01 * std::cos(100.0 * along), along, up)).cast<float>());
