@@ -8,12 +8,7 @@
 namespace tubebin::modeling {
 namespace {
 
-/// Within three spacings lie some 28 points of a surface, 14 at its border and 9 of a narrow strip; along an edge every
-/// pixel may be mixed.
-constexpr double kReach = 3.0;  // spacings
-constexpr int kFew = 8;
-
-/// Those without a label that have few others like them beside them.
+/// Those without a label that lie alone among their like.
 std::vector<std::uint32_t> lone_points(const FilteredCloud& cloud, const ViewProjection& projection,
                                        const std::vector<cloud::Label>& labels) {
   std::vector<std::uint32_t> unlabeled;
@@ -21,10 +16,10 @@ std::vector<std::uint32_t> lone_points(const FilteredCloud& cloud, const ViewPro
   for (std::uint32_t i = 0; i < labels.size(); ++i)
     if (labels[i] == 0) unlabeled.push_back(i), points.push_back(cloud.points[i]);
   if (points.empty()) return {};
-  const std::vector<int> counts = count_neighbors(projection, points, kReach * cloud.spacing);
+  const std::vector<bool> alone = lie_alone(projection, points, cloud.spacing);
   std::vector<std::uint32_t> lone;
   for (std::size_t k = 0; k < unlabeled.size(); ++k)
-    if (counts[k] <= kFew) lone.push_back(unlabeled[k]);
+    if (alone[k]) lone.push_back(unlabeled[k]);
   return lone;
 }
 

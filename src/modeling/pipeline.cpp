@@ -89,31 +89,21 @@ bool has_surroundings(const ModelingInput& input, const Background& of_bin) {
   return 50 * beside_bin(input, of_bin.foreground, input.bin->height / 2.0).size() > of_bin.foreground.size();
 }
 
-/// Moves points that were set aside.
-void move_to_foreground(const std::vector<std::uint32_t>& indices, Background& background) {
-  std::vector<std::uint32_t> foreground, set_aside;
-  std::ranges::set_union(background.foreground, indices, std::back_inserter(foreground));
-  std::ranges::set_difference(background.set_aside, indices, std::back_inserter(set_aside));
-  background.foreground = std::move(foreground);
-  background.set_aside = std::move(set_aside);
-}
-
-/// Moves points of the foreground, in its order.
-void set_aside(const std::vector<std::uint32_t>& indices, Background& background) {
-  std::vector<std::uint32_t> foreground;
-  std::ranges::set_difference(background.foreground, indices, std::back_inserter(foreground));
-  background.foreground = std::move(foreground);
-  background.set_aside.insert(background.set_aside.end(), indices.begin(), indices.end());
+/// Moves indices from one list to another. All ascend, before and after.
+void move_points(const std::vector<std::uint32_t>& indices, std::vector<std::uint32_t>& from,
+                 std::vector<std::uint32_t>& to) {
+  std::vector<std::uint32_t> left, all;
+  std::ranges::set_difference(from, indices, std::back_inserter(left));
+  std::ranges::set_union(to, indices, std::back_inserter(all));
+  from = std::move(left);
+  to = std::move(all);
 }
 
 /// All of the background, and what of the foreground is none of `of_bin`'s.
 Background without_surroundings(Background background, const Background& of_bin) {
-  std::vector<std::uint32_t> foreground, around;
-  std::ranges::set_intersection(background.foreground, of_bin.foreground, std::back_inserter(foreground));
-  std::ranges::set_difference(background.foreground, foreground, std::back_inserter(around));
-  std::ranges::move(around, std::back_inserter(background.set_aside));
-  std::ranges::sort(background.set_aside);
-  background.foreground = std::move(foreground);
+  std::vector<std::uint32_t> around;
+  std::ranges::set_difference(background.foreground, of_bin.foreground, std::back_inserter(around));
+  move_points(around, background.foreground, background.set_aside);
   return background;
 }
 
@@ -130,7 +120,8 @@ Background background_around_bin(const ModelingInput& input, const ViewProjectio
   std::ranges::set_intersection(beside, background.foreground, std::back_inserter(not_flat));
   // What is over the walls leads over them.
   const std::vector<std::uint32_t> over_walls = beside_bin(input, of_bin.foreground, -input.bin->wall_thickness);
-  move_to_foreground(hanging_over(input.points, over_walls, not_flat, background.spacing), of_bin);
+  move_points(hanging_over(input.points, over_walls, not_flat, background.spacing), of_bin.set_aside,
+              of_bin.foreground);
   return is_alone ? of_bin : without_surroundings(std::move(background), of_bin);
 }
 
@@ -207,9 +198,9 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
                                                  .height = input.bin->height})
                         : find_bin(background, found.up, input.points);
   if (found.bin && !input.bin)
-    set_aside(points_on_rim(*found.bin, input.points, background.foreground,
-                            5.0 * background.noise + background.spacing / 2.0, background.spacing),
-              background);
+    move_points(points_on_rim(*found.bin, input.points, background.foreground,
+                              5.0 * background.noise + background.spacing / 2.0, background.spacing),
+                background.foreground, background.set_aside);
   crop(background, input, options);
   FilteredCloud cloud = filter(input, projection, background.foreground, options.filtering, options.seed);
   cloud.spacing = spacing_without_lone_points(cloud.spacing, background.spacing / std::sqrt(options.filtering.ratio));

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "modeling/input/bin_rim.hpp"
+#include "modeling/input/point_sample.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -49,8 +50,7 @@ class BinsOnFloor {
       if (std::abs(region.plane.normal.dot(up_)) < kLean && floor.plane.height(region.center) > 0.0)
         standing_.push_back(&region);
     if (standing_.size() < 2) return;
-    for (std::size_t i = 0; i < points.size(); i += points.size() / kSample + 1)
-      if (cloud::is_finite(points[i])) sample_.push_back(points[i].cast<double>());
+    sample_ = sample_of(points, kSample);
     for (std::size_t i = 0; i < points.size(); i += dense_stride())
       heights_.push_back(height(points[i].cast<double>()));
   }

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <span>
 
+#include "modeling/input/point_sample.hpp"
+
 namespace tubebin::modeling {
 namespace {
 
@@ -92,14 +94,6 @@ std::optional<Constraint> layer_beside(const Plane& face, const scene::Bin& bin,
   return Constraint{sum / static_cast<double>(most.size()), &face};
 }
 
-std::vector<Vec3> sampled_points(const ModelingInput& input) {
-  constexpr std::size_t kSample = 50000;
-  std::vector<Vec3> sample;
-  for (std::size_t i = 0; i < input.points.size(); i += input.points.size() / kSample + 1)
-    if (cloud::is_finite(input.points[i])) sample.push_back(input.points[i].cast<double>());
-  return sample;
-}
-
 }  // namespace
 
 bool bin_is_in_place(const ModelingInput& input, double tolerance) {
@@ -107,9 +101,8 @@ bool bin_is_in_place(const ModelingInput& input, double tolerance) {
   const Pose bin_from_world = input.world_from_bin.inverse();
   const auto faces = inner_planes(*input.bin);
   std::array<int, 5> on = {}, behind = {}, near = {};
-  for (std::size_t i = 0; i < input.points.size(); i += input.points.size() / kSample + 1) {
-    if (!cloud::is_finite(input.points[i])) continue;
-    const Vec3 p = bin_from_world * input.points[i].cast<double>();
+  for (const Vec3& in_world : sample_of(input.points, kSample)) {
+    const Vec3 p = bin_from_world * in_world;
     if (!is_before_face(*input.bin, p)) continue;
     for (std::size_t f = 0; f < faces.size(); ++f) {
       const double height = faces[f].height(p);
@@ -125,8 +118,8 @@ bool bin_is_in_place(const ModelingInput& input, double tolerance) {
 
 std::optional<Pose> refined_bin_pose(const ModelingInput& input, const std::vector<FlatRegion>& regions) {
   constexpr int kSteps = 3;
+  constexpr std::size_t kSample = 50000;
   const auto faces = inner_planes(*input.bin);
-  const std::vector<Vec3> sample = sampled_points(input);
   Pose world_from_bin = input.world_from_bin;
   for (int step = 0; step < kSteps; ++step) {
     const Pose bin_from_world = world_from_bin.inverse();
@@ -139,9 +132,9 @@ std::optional<Pose> refined_bin_pose(const ModelingInput& input, const std::vect
     }
     if (constraints.empty()) return std::nullopt;
     // Regions turn the bin first: a plane that leans is no thin layer.
-    if (step > 0) {
-      std::vector<Vec3> points;
-      for (const Vec3& p : sample) points.push_back(bin_from_world * p);
+    if (step > 0 && !others.empty()) {
+      std::vector<Vec3> points = sample_of(input.points, kSample);
+      for (Vec3& p : points) p = bin_from_world * p;
       for (const Plane* face : others)
         if (const auto layer = layer_beside(*face, *input.bin, points)) constraints.push_back(*layer);
     }

@@ -21,18 +21,15 @@ std::uint64_t position_key(const cloud::Point& point, std::uint64_t seed) {
   return derive_seed({seed, (std::uint64_t{x} << 32) | y, z});
 }
 
-/// Drops points with fewer than a third of the neighbours that their surroundings let expect.
+/// Drops points that lie alone.
 std::vector<std::uint32_t> remove_outliers(const ModelingInput& input, const ViewProjection& projection,
                                            const std::vector<std::uint32_t>& indices) {
   std::vector<cloud::Point> selected;
   for (const std::uint32_t i : indices) selected.push_back(input.points[i]);
-  const double reach = 3.0 * spacing_of(views_of(input, projection, indices));
-  const std::vector<int> counts = count_neighbors(projection, selected, reach);
-  // Within three spacings lie some 28 points of a surface, half of them at its edges.
-  constexpr int kLeast = 9;
+  const std::vector<bool> alone = lie_alone(projection, selected, spacing_of(views_of(input, projection, indices)));
   std::vector<std::uint32_t> kept;
   for (std::size_t k = 0; k < indices.size(); ++k)
-    if (counts[k] >= kLeast) kept.push_back(indices[k]);
+    if (!alone[k]) kept.push_back(indices[k]);
   return kept;
 }
 

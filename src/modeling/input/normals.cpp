@@ -214,4 +214,12 @@ std::vector<int> count_neighbors(const ViewProjection& projection, std::span<con
   return counts;
 }
 
+std::vector<bool> lie_alone(const ViewProjection& projection, std::span<const cloud::Point> points, double spacing) {
+  // Within three spacings lie some 28 points of a surface, half of them at its edges.
+  constexpr int kLeast = 9;
+  std::vector<bool> alone;
+  for (const int count : count_neighbors(projection, points, 3.0 * spacing)) alone.push_back(count < kLeast);
+  return alone;
+}
+
 }  // namespace tubebin::modeling

@@ -18,4 +18,8 @@ std::vector<cloud::Point> estimate_normals(const ViewProjection& projection, std
 /// Points within `radius` metres of each point, itself included.
 std::vector<int> count_neighbors(const ViewProjection& projection, std::span<const cloud::Point> points, double radius);
 
+/// Whether each point has fewer than a third of the neighbours that a surface, whose points lie `spacing` metres apart, lets
+/// expect.
+std::vector<bool> lie_alone(const ViewProjection& projection, std::span<const cloud::Point> points, double spacing);
+
 }  // namespace tubebin::modeling

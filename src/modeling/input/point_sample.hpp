@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tubebin/cloud/cloud.hpp"
+
+namespace tubebin::modeling {
+
+/// Of at most about `size` points of a scan, spread evenly over it, those that are finite.
+inline std::vector<Vec3> sample_of(std::span<const cloud::Point> points, std::size_t size) {
+  std::vector<Vec3> sample;
+  for (std::size_t i = 0; i < points.size(); i += points.size() / size + 1)
+    if (cloud::is_finite(points[i])) sample.push_back(points[i].cast<double>());
+  return sample;
+}
+
+}  // namespace tubebin::modeling
