@@ -14,7 +14,7 @@ bool looks_like_ply(std::string_view bytes);
 Cloud parse_pcd(std::string_view bytes, const std::string& name, double scale);
 Cloud parse_ply(std::string_view bytes, const std::string& name, double scale);
 
-std::string format_pcd(const Cloud& cloud, CloudFormat format);
+void format_pcd(const Cloud& cloud, CloudFormat format, const ByteSink& sink);
 std::string format_ply(const Cloud& cloud);
 
 }  // namespace tubebin::cloud

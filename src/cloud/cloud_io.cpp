@@ -24,9 +24,16 @@ void check_consistent(const Cloud& cloud) {
 
 const char* extension(CloudFormat format) { return format == CloudFormat::ply_binary ? ".ply" : ".pcd"; }
 
-std::string format_cloud(const Cloud& cloud, CloudFormat format) {
+void format_cloud(const Cloud& cloud, CloudFormat format, const ByteSink& sink) {
   check_consistent(cloud);
-  return format == CloudFormat::ply_binary ? format_ply(cloud) : format_pcd(cloud, format);
+  if (format == CloudFormat::ply_binary) sink(format_ply(cloud));
+  else format_pcd(cloud, format, sink);
+}
+
+std::string format_cloud(const Cloud& cloud, CloudFormat format) {
+  std::string bytes;
+  format_cloud(cloud, format, [&bytes](std::string_view block) { bytes += block; });
+  return bytes;
 }
 
 void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format) {

@@ -44,12 +44,11 @@ std::size_t point_size(const Cloud& cloud) {
          (3 + (cloud.colors.empty() ? 0 : 1) + (cloud.labels.empty() ? 0 : 1) + (cloud.sources.empty() ? 0 : 1));
 }
 
-/// Point by point, of which a block at a time is put together in the processor's cache.
-void append_binary(std::string& out, const Cloud& cloud) {
-  constexpr std::size_t kBlock = 256;
+/// Point by point. A block is put together, and taken, in the processor's cache.
+void write_binary(const Cloud& cloud, const ByteSink& sink) {
+  constexpr std::size_t kBlock = 4096;
   const std::size_t stride = point_size(cloud);
   std::array<char, kBlock * 6 * kScalarSize> block;
-  out.reserve(out.size() + cloud.size() * stride);
   for (std::size_t begin = 0; begin < cloud.size(); begin += kBlock) {
     const std::size_t count = std::min(kBlock, cloud.size() - begin);
     char* field = block.data();
@@ -64,7 +63,7 @@ void append_binary(std::string& out, const Cloud& cloud) {
     put(cloud.colors);
     put(cloud.labels);
     put(cloud.sources);
-    out.append(block.data(), count * stride);
+    sink({block.data(), count * stride});
   }
 }
 
@@ -110,19 +109,20 @@ std::string compress(const std::string& input) {
   return readable && back == input ? out : lzf_literals(input);
 }
 
-void append_compressed(std::string& out, const Cloud& cloud) {
+void write_compressed(const Cloud& cloud, const ByteSink& sink) {
   const std::string fields = fields_one_by_one(cloud);
   if (fields.size() + fields.size() / 16 + 64 > std::numeric_limits<std::uint32_t>::max())
     throw_io_error("a cloud of {} points is too large for a compressed PCD file (4 GB); write it binary", cloud.size());
   const std::string compressed = fields.empty() ? "" : compress(fields);
   for (const std::size_t size : {compressed.size(), fields.size()}) {
     const auto stored = static_cast<std::uint32_t>(size);
-    out.append(reinterpret_cast<const char*>(&stored), sizeof(stored));
+    sink({reinterpret_cast<const char*>(&stored), sizeof(stored)});
   }
-  out += compressed;
+  sink(compressed);
 }
 
-void append_ascii(std::string& out, const Cloud& cloud) {
+void write_ascii(const Cloud& cloud, const ByteSink& sink) {
+  std::string out;
   const auto end = std::back_inserter(out);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Point& p = cloud.points[i];
@@ -132,16 +132,16 @@ void append_ascii(std::string& out, const Cloud& cloud) {
     if (!cloud.sources.empty()) fmt::format_to(end, " {}", cloud.sources[i]);
     out += '\n';
   }
+  sink(out);
 }
 
 }  // namespace
 
-std::string format_pcd(const Cloud& cloud, CloudFormat format) {
-  std::string out = format_header(cloud, format);
-  if (format == CloudFormat::pcd_ascii) append_ascii(out, cloud);
-  else if (format == CloudFormat::pcd_compressed) append_compressed(out, cloud);
-  else append_binary(out, cloud);
-  return out;
+void format_pcd(const Cloud& cloud, CloudFormat format, const ByteSink& sink) {
+  sink(format_header(cloud, format));
+  if (format == CloudFormat::pcd_ascii) write_ascii(cloud, sink);
+  else if (format == CloudFormat::pcd_compressed) write_compressed(cloud, sink);
+  else write_binary(cloud, sink);
 }
 
 }  // namespace tubebin::cloud

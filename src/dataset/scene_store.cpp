@@ -34,6 +34,23 @@ void check_reads_back(const std::string& bytes, const cloud::Cloud& cloud, const
     throw_io_error("{}: does not read back as it was written", path);
 }
 
+void write_readable(const cloud::Cloud& cloud, cloud::CloudFormat format, const std::string& path,
+                    const ByteSink& sink) {
+  if (format != cloud::CloudFormat::pcd_compressed) return cloud::format_cloud(cloud, format, sink);
+  const std::string bytes = cloud::format_cloud(cloud, format);
+  check_reads_back(bytes, cloud, path);
+  sink(bytes);
+}
+
+FileRecord write_recorded(const jobs::FileWriter& write, const ByteSink& sink) {
+  FileRecorder recorder;
+  write([&](std::string_view block) {
+    recorder.add(block);
+    sink(block);
+  });
+  return recorder.record();
+}
+
 }  // namespace
 
 std::string SceneStore::cloud_name() const { return std::string("cloud") + extension(options_.format); }
@@ -47,16 +64,25 @@ std::function<std::map<ConfinedPath, FileRecord>()> SceneStore::begin_write(cons
   if (content.clean_cloud)
     clouds[clean_cloud_name()] = scene::in_space(std::move(*content.clean_cloud), content.record.space);
 
-  std::map<std::string, std::string> files = std::move(content.images);
-  for (const auto& [name, cloud] : clouds) files[name] = cloud::format_cloud(cloud, options_.format);
-  files["scene.json"] = scene::format_scene_json(content.record);
-  files["tubes.txt"] = scene::format_tubes_txt(content.record.scene.tubes);
+  std::map<ConfinedPath, FileRecord> records;
+  std::map<std::string, jobs::FileWriter> files;
+  const auto add = [&](const std::string& name, auto write) {
+    files[name] = [&records, name, write = std::move(write)](const ByteSink& sink) {
+      records[name] = write_recorded(write, sink);
+    };
+  };
+  const auto add_bytes = [&](const std::string& name, std::string bytes) {
+    add(name, [bytes = std::move(bytes)](const ByteSink& sink) { sink(bytes); });
+  };
+  for (const auto& [name, cloud] : clouds)
+    add(name, [&, place = path(scene_name) + "/" + name](const ByteSink& sink) {
+      write_readable(cloud, options_.format, place, sink);
+    });
+  for (auto& [name, bytes] : content.images) add_bytes(name, std::move(bytes));
+  add_bytes("scene.json", scene::format_scene_json(content.record));
+  add_bytes("tubes.txt", scene::format_tubes_txt(content.record.scene.tubes));
 
   const std::function<void()> finish = jobs::begin_whole_folder(folder_, scene_name, files);
-  if (options_.format == cloud::CloudFormat::pcd_compressed)
-    for (const auto& [name, cloud] : clouds) check_reads_back(files[name], cloud, path(scene_name) + "/" + name);
-  std::map<ConfinedPath, FileRecord> records;
-  for (const auto& [name, bytes] : files) records[name] = record_bytes(bytes);
   return [finish, records] {
     finish();
     return records;

@@ -103,13 +103,9 @@ class UnfinishedFolder {
 /// A new file whose bytes are on their way to the disk, and there after sync().
 class NewFile {
  public:
-  NewFile(FolderEntry entry, std::string_view bytes)
+  NewFile(FolderEntry entry, const FileWriter& writer)
       : entry_(std::move(entry)), file_(open_file(entry_, O_WRONLY | O_CREAT | O_EXCL)) {
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(file_.get(), bytes.data(), bytes.size());
-      if (written < 0 && errno != EINTR) fail_at(entry_, kWriting, errno);
-      if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
+    writer([this](std::string_view bytes) { write(bytes); });
     sync_file_range(file_.get(), 0, 0, SYNC_FILE_RANGE_WRITE);  // only begins; what fails shows in sync()
   }
   void sync() const {
@@ -117,6 +113,14 @@ class NewFile {
   }
 
  private:
+  void write(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(file_.get(), bytes.data(), bytes.size());
+      if (written < 0 && errno != EINTR) fail_at(entry_, kWriting, errno);
+      if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+
   FolderEntry entry_;
   FileDescriptor file_;
 };
@@ -143,11 +147,11 @@ void link_or_copy(const std::string& source, const FolderEntry& entry) {
 class FolderTransaction {
  public:
   FolderTransaction(const OutputFolder& output, const ConfinedPath& name,
-                    const std::map<std::string, std::string>& files)
+                    const std::map<std::string, FileWriter>& files)
       : folder_(output, name) {
-    for (const auto& [file, bytes] : files) {
+    for (const auto& [file, writer] : files) {
       if (files_.size() == kOpenFilesMax) sync_files();
-      files_.emplace_back(folder_.file(file), bytes);
+      files_.emplace_back(folder_.file(file), writer);
     }
   }
 
@@ -169,8 +173,15 @@ class FolderTransaction {
 }  // namespace
 
 std::function<void()> begin_whole_folder(const OutputFolder& output, const ConfinedPath& name,
-                                         const std::map<std::string, std::string>& files) {
+                                         const std::map<std::string, FileWriter>& files) {
   return [folder = std::make_shared<FolderTransaction>(output, name, files)] { folder->commit(); };
+}
+
+std::function<void()> begin_whole_folder(const OutputFolder& output, const ConfinedPath& name,
+                                         const std::map<std::string, std::string>& files) {
+  std::map<std::string, FileWriter> writers;
+  for (const auto& [file, bytes] : files) writers[file] = [&bytes](const ByteSink& sink) { sink(bytes); };
+  return begin_whole_folder(output, name, writers);
 }
 
 std::function<void()> begin_linked_folder(const OutputFolder& output, const ConfinedPath& name,

@@ -80,6 +80,12 @@ TEST(CloudIo, AnEmptyCloudAndOnePointReadBack) {
   }
 }
 
+TEST(CloudIo, CloudsOfManyBlocksReadBack) {
+  const Cloud cloud = make_cloud(201, 100);
+  for (const CloudFormat format : kFormats)
+    expect_same(parse_cloud(format_cloud(cloud, format), "blocks"), cloud, 1e-6);
+}
+
 TEST(CloudIo, RowsWithoutColumnsAreAnEmptyCloud) {
   const Cloud cloud = parse_cloud(
       "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 0\nHEIGHT 4000000000\nPOINTS 0\nDATA ascii\n", "a");

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "tubebin/cloud/cloud.hpp"
+#include "tubebin/core/file_record.hpp"
 
 namespace tubebin::cloud {
 
@@ -21,6 +22,9 @@ void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format
 
 /// The bytes of such a file.
 std::string format_cloud(const Cloud& cloud, CloudFormat format);
+
+/// The same, handed on in blocks; those of a binary PCD file are small enough for the processor's cache.
+void format_cloud(const Cloud& cloud, CloudFormat format, const ByteSink& sink);
 
 /// Reads a PCD or PLY file, told apart by their first bytes: coordinates of any type, organized or not,
 /// colours as rgb, rgba or red green blue, labels and sources as whole numbers of any type; other fields, faces and the

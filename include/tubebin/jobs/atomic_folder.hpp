@@ -6,13 +6,20 @@
 #include <set>
 #include <string>
 
+#include "tubebin/core/file_record.hpp"
 #include "tubebin/core/folder_entry.hpp"
 
 namespace tubebin::jobs {
 
-/// Begins to write the files (bytes by path beneath it) into a hidden sibling of `name`. The returned function waits until they
+/// Hands a file's bytes on.
+using FileWriter = std::function<void(const ByteSink&)>;
+
+/// Begins to write the files (by path beneath it) into a hidden sibling of `name`. The returned function waits until they
 /// are on the disk and renames the sibling to `name`, in the place of what was there; without its call nothing is
 /// left. Both throw IoError.
+std::function<void()> begin_whole_folder(const OutputFolder& output, const ConfinedPath& name,
+                                         const std::map<std::string, FileWriter>& files);
+/// `files`: their bytes.
 std::function<void()> begin_whole_folder(const OutputFolder& output, const ConfinedPath& name,
                                          const std::map<std::string, std::string>& files);
 
