@@ -232,10 +232,14 @@ int model_one(const Arguments& arguments) {
   const auto unlabeled = std::count(result.labels.begin(), result.labels.end(), cloud::Label{0});
   fmt::print("{} tubes of radius {:.2f} mm in {} points, {} of them without a tube; {:.1f} ms\n", result.tubes.size(),
              result.radius * 1e3, result.labels.size(), unlabeled, result.seconds.total() * 1e3);
-  for (std::size_t k = 0; k < result.tubes.size(); ++k)
-    fmt::print("tube {}: {} cylinders, {:.3f} m, {} points\n", k + 1, result.tubes[k].cylinder_count(),
-               result.tubes[k].length(),
-               std::count(result.labels.begin(), result.labels.end(), static_cast<cloud::Label>(k + 1)));
+  for (std::size_t k = 0; k < result.tubes.size(); ++k) {
+    const modeling::TubeModel& tube = result.tubes[k];
+    const auto points = std::ranges::count(result.labels, static_cast<cloud::Label>(k + 1));
+    if (tube.is_ball())
+      fmt::print("tube {}: a ball of radius {:.2f} mm, {} points\n", k + 1, tube.radius * 1e3, points);
+    else
+      fmt::print("tube {}: {} cylinders, {:.3f} m, {} points\n", k + 1, tube.cylinder_count(), tube.length(), points);
+  }
   fmt::print("{}\n", modeling::describe_found(result));
   for (const std::string& doubt : result.found.doubts) fmt::print(stderr, "Warning: {}: {}\n", arguments.input, doubt);
   return static_cast<int>(result.found.doubts.empty() ? ExitCode::done : ExitCode::incomplete);

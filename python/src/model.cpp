@@ -74,7 +74,7 @@ void bind_tube(nb::module_& module) {
           "centerline", [](const Tube& self) { return array_of(self.model.paths.front().nodes); },
           nb::rv_policy::automatic,
           "(N, 3) float64: ends and joints of the N - 1 cylinders in a row; of a tube that branches, of its "
-          "longest path.")
+          "longest path; of a ball, its centre.")
       .def_prop_ro(
           "bridged", [](const Tube& self) { return self.model.paths.front().bridged; },
           "Of each of the centreline's N - 1 cylinders: it spans a stretch that the scanner did not see.")

@@ -8,7 +8,8 @@
 namespace tubebin::modeling {
 namespace {
 
-/// A cylinder of a surface, ready for distances. At a flat end the solid stops; at the others a sphere goes on.
+/// A cylinder of a surface, ready for distances. At a flat end the solid stops; at the others a sphere goes on. A ball has no
+/// length.
 struct SolidCylinder {
   cloud::Point start, axis;  ///< axis: unit
   float length, radius;
@@ -45,6 +46,15 @@ struct SolidCylinder {
 
 std::vector<SolidCylinder> solid_cylinders(const TubeSurface& surface, std::uint32_t index) {
   std::vector<SolidCylinder> cylinders;
+  if (surface.nodes.size() == 1)
+    cylinders.push_back({.start = surface.nodes.front().cast<float>(),
+                         .axis = cloud::Point::UnitX(),
+                         .length = 0.0f,
+                         .radius = static_cast<float>(surface.radius),
+                         .flat_start = false,
+                         .flat_end = false,
+                         .bridged = false,
+                         .surface = index});
   for (std::size_t k = 0; k + 1 < surface.nodes.size(); ++k) {
     const Vec3 along = surface.nodes[k + 1] - surface.nodes[k];
     const double length = along.norm();

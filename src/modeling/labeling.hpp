@@ -10,7 +10,7 @@
 
 namespace tubebin::modeling {
 
-/// The surface of a tube along a polyline: flat-ended cylinders, and spheres at the inner nodes.
+/// The surface of a tube along a polyline: flat-ended cylinders, and spheres at the inner nodes; a sphere at a node alone.
 struct TubeSurface {
   std::span<const Vec3> nodes;
   double radius = 0.0;

@@ -58,6 +58,7 @@ Json tube_json(const TubeModel& tube, std::size_t label, cloud::Color color, std
   for (std::size_t p = 0; p < tube.paths.size(); ++p) {
     const TubePath& path = tube.paths[p];
     const auto& nodes = path.nodes;
+    if (tube.is_ball()) joints.push_back({{"position", place(nodes[0])}, {"radius", rounded(tube.radius)}});
     std::size_t bridge = 0;
     for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
       Json cylinder = {{"path", p},

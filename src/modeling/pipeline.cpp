@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "modeling/doubtful_tubes.hpp"
+#include "modeling/fitting/ball_finding.hpp"
 #include "modeling/fitting/centerline_fitting.hpp"
 #include "modeling/fitting/centerline_pieces.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
@@ -142,12 +143,11 @@ Background find_surroundings(ModelingInput& input, const ViewProjection& project
 }
 
 /// Radii and pieces; of `--method region_growing`, which finds pieces of its own, a told radius alone.
-std::vector<TubeClass> find_classes(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& scan,
-                                    const Background& background, const SceneFound& found,
-                                    const ModelingOptions& options) {
+TubeClasses find_classes(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& scan,
+                         const Background& background, const SceneFound& found, const ModelingOptions& options) {
   const std::vector<double> radii = told_radii(options);
   if (options.method == ModelingMethod::region_growing && !radii.empty())
-    return {{.radius = radii.front(), .radius_error = 0.0, .pieces = {}}};
+    return {.classes = {{.radius = radii.front(), .radius_error = 0.0, .pieces = {}}}, .round = {}};
   return find_tube_classes(cloud, projection, scan, background.noise, background.is_known,
                            found.up_is_known ? found.up : Vec3::Zero(), radii);
 }
@@ -308,7 +308,11 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   scan.add_solids(solids_of(background));
   watch.lap(result.seconds.filtering);
 
-  const std::vector<TubeClass> classes = find_classes(cloud, projection, scan, background, result.found, options);
+  auto [classes, round] = find_classes(cloud, projection, scan, background, result.found, options);
+  // What lies in a known bin is there to be found, whatever it is.
+  std::vector<TubePiece> balls;
+  if (input.bin && options.method == ModelingMethod::centerline)
+    balls = find_balls(std::move(round), cloud, background.noise, classes);
   for (const TubeClass& tube_class : classes) {
     result.radii.push_back(tube_class.radius);
     result.radius_errors.push_back(tube_class.radius_error);
@@ -318,6 +322,9 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
 
   if (options.method == ModelingMethod::centerline) {
     result.tubes = join_classes(classes, scan, options, result);
+    for (const TubePiece& ball : balls)
+      result.tubes.push_back(
+          {.paths = {{.nodes = ball.nodes, .bridged = {}, .evidence = ball.evidence}}, .radius = ball.radius});
     watch.lap(result.seconds.joining);
   } else if (result.radius > 0.0) {
     result.tubes = grow_tubes(cloud, projection, result.radius, options, result.seconds, watch);

@@ -96,7 +96,7 @@ bool reach_seen_ends(std::vector<TubeModel>& tubes, std::span<const cloud::Point
   bool any = false;
   for (TubeModel& tube : tubes)
     for (TubePath& path : tube.paths)
-      for (int end = 0; end < 2; ++end) {
+      for (int end = 0; end < 2 && path.nodes.size() > 1; ++end) {
         std::ranges::reverse(path.nodes);
         const PathEnd last = last_end(path.nodes, tube.radius);
         std::optional<double> beyond = seen_from_the_front(last, tube.radius, spacing, unlabeled);

@@ -68,6 +68,15 @@ void check_length(double length, const std::string& name) {
                    kMaxModelLength);
 }
 
+/// Of a ball, which has no cylinders: its joint alone.
+std::vector<Vec3> centers_of_balls(const JsonPlace& tube) {
+  std::vector<Vec3> centers;
+  if (!tube.at("cylinders").elements().empty() || !tube.has("joints")) return centers;
+  for (const JsonPlace& joint : tube.at("joints").elements())
+    centers.push_back(joint.at("position").vector(kCoordinate));
+  return centers;
+}
+
 /// Of a tube, or of a bridge in it: the least counts.
 void add_log_odds(const JsonPlace& part, const char* key, evaluation::TubeLine& tube) {
   if (!part.has(key)) return;
@@ -105,6 +114,7 @@ std::vector<evaluation::TubeLine> parse_model_tubes(std::string_view text, const
       add_log_odds(cylinder, "log_odds", line);
       length += (line.centerline.back().end - line.centerline.back().start).norm();
     }
+    for (const Vec3& center : centers_of_balls(tube)) line.centerline.push_back({center, center});
     model.push_back(std::move(line));
   }
   check_length(length, name);
@@ -126,6 +136,7 @@ std::vector<modeling::TubeModel> parse_labeling_tubes(std::string_view text, con
       tube.paths.back().nodes.push_back(cylinder.at("end").vector(kCoordinate));
       tube.paths.back().bridged.push_back(cylinder.at("bridged").flag());
     }
+    for (const Vec3& center : centers_of_balls(place)) tube.paths.push_back({.nodes = {center}, .bridged = {}});
     length += tube.length();
     tubes.push_back(std::move(tube));
   }

@@ -93,6 +93,19 @@ TEST_F(ResultsOfOneScene, HaveNoPointsWhereTheirCountsAreOthers) {
   EXPECT_FALSE(points());
 }
 
+TEST(LabelsOfModelJson, KnowBalls) {
+  const std::string text =
+      R"({"tubes": [{"radius": 0.02, "cylinders": [], "joints": [{"position": [1, 2, 3], "radius": 0.02}]}]})";
+  const auto tubes = parse_labeling_tubes(text, "model.json");
+  ASSERT_EQ(tubes.size(), 1U);
+  EXPECT_TRUE(tubes[0].is_ball());
+  EXPECT_EQ(tubes[0].paths.at(0).nodes, std::vector{Vec3(1, 2, 3)});
+  const auto lines = parse_model_tubes(text, "model.json");
+  ASSERT_EQ(lines.at(0).centerline.size(), 1U);
+  EXPECT_EQ(lines[0].centerline[0].start, Vec3(1, 2, 3));
+  EXPECT_EQ(lines[0].centerline[0].end, Vec3(1, 2, 3));
+}
+
 TEST(LabelsOfModelJson, NeedTubesWithASurface) {
   const std::string text = R"({"tubes": [{"radius": 0, "cylinders": []}]})";
   try {

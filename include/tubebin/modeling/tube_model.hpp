@@ -15,7 +15,7 @@ using Segment = std::vector<std::uint32_t>;
 
 /// A stretch of a tube as fitted to one segment: consecutive cylinders along a polyline.
 struct TubePiece {
-  std::vector<Vec3> nodes;  ///< metres, world frame; at least two
+  std::vector<Vec3> nodes;  ///< metres, world frame; at least two, but of a ball one
   double radius = 0.0;      ///< metres
   Segment points;           ///< that it was fitted to
   double evidence = 0.0;    ///< nats: log of how much likelier its points are of a tube than of a flat strip
@@ -25,7 +25,8 @@ struct TubePiece {
 
 /// Cylinders in a row, a joint between consecutive ones.
 struct TubePath {
-  std::vector<Vec3> nodes;    ///< cylinder i reaches from nodes[i] to nodes[i + 1]; metres, world frame
+  std::vector<Vec3>
+      nodes;  ///< cylinder i reaches from nodes[i] to nodes[i + 1]; metres, world frame; a ball's centre alone
   std::vector<bool> bridged;  ///< of cylinder i: it spans a stretch without points, from one piece to the next
   /// nats, of the bridges in order: log of how much likelier the best explanation of the scan is than the best one in
   /// which the pieces on both sides are different tubes'; 10 at most. None where this was not looked at.
@@ -44,6 +45,7 @@ struct TubeModel {
 
   double length() const;
   std::size_t cylinder_count() const;
+  bool is_ball() const { return cylinder_count() == 0; }
 };
 
 /// A length or coordinate as model.json has it: to a tenth of a micrometre, below what a scanner tells, and short.

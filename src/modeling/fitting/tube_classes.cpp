@@ -89,15 +89,15 @@ class ClassFinder {
         background_is_known_(background_is_known),
         up_(up) {}
 
-  std::vector<TubeClass> find_told(const std::vector<double>& radii) {
+  TubeClasses find_told(const std::vector<double>& radii) {
     for (const double radius : radii) {
       possible_.push_back(pieces_of(left(), radius));
       if (radii.size() > 1) set_aside(possible_.back().sure.pieces);
     }
-    return settled(possible_);
+    return {.classes = settled(possible_), .round = {}};
   }
 
-  std::vector<TubeClass> find_all() {
+  TubeClasses find_all() {
     std::vector<double> tried;
     PossibleClass weak;  // the likeliest of those that are not believed
     const std::size_t enough = cloud_.points.size() / 100;
@@ -119,7 +119,7 @@ class ClassFinder {
     std::vector<TubeClass> classes = settled(possible_);
     for (TubeClass& found : classes) drop_streaks(found);
     std::erase_if(classes, [](const TubeClass& found) { return found.pieces.empty(); });
-    return classes;
+    return {.classes = std::move(classes), .round = std::move(round_)};
   }
 
  private:
@@ -131,7 +131,8 @@ class ClassFinder {
   /// points show one.
   double likeliest_radius(FilteredCloud& cloud, const std::vector<double>& tried, std::size_t enough) {
     if (cloud.normals.empty()) add_normals(cloud, projection_, 0.0);
-    const CurvedPlaces places = find_curved_places(cloud.points, cloud.normals, projection_, cloud.spacing);
+    CurvedPlaces places = find_curved_places(cloud.points, cloud.normals, projection_, cloud.spacing);
+    if (!rest_) round_ = std::move(places.round);
     const CommonRadius common = commonest_radius(places.radii, tried);
     if (common.places < 10 || common.places * cloud.points.size() < enough * places.looked_at) return 0.0;
     return common.radius;
@@ -268,15 +269,15 @@ class ClassFinder {
   bool background_is_known_;
   Vec3 up_;
   std::optional<FilteredCloud> rest_;
+  std::vector<RoundPlace> round_;
   std::vector<TubePiece> standing_;
   std::vector<PossibleClass> possible_;  ///< of the radii so far
 };
 
 }  // namespace
 
-std::vector<TubeClass> find_tube_classes(FilteredCloud& cloud, const ViewProjection& projection,
-                                         const OcclusionTest& occlusion, double noise, bool background_is_known,
-                                         const Vec3& up, const std::vector<double>& told) {
+TubeClasses find_tube_classes(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion,
+                              double noise, bool background_is_known, const Vec3& up, const std::vector<double>& told) {
   ClassFinder finder(cloud, projection, occlusion, noise, background_is_known, up);
   return told.empty() ? finder.find_all() : finder.find_told(told);
 }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "modeling/input/radius_estimation.hpp"
 #include "modeling/joining/occlusion.hpp"
 #include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/tube_model.hpp"
@@ -16,13 +17,17 @@ struct TubeClass {
   std::vector<TubePiece> pieces;
 };
 
+struct TubeClasses {
+  std::vector<TubeClass> classes;
+  std::vector<RoundPlace> round;  ///< of all of the cloud; none where radii are told, and all is tubes of these
+};
+
 /// Finds the pieces of tubes of each radius, the commonest first: the `told` radii (metres), or, where none is told, those
 /// that the surface's curvature shows, until what is left shows none. `cloud` gets normals where it has none. `noise`:
 /// metres, of the points across a surface; 0 where it is not known. `background_is_known`: pieces of the first radius need
 /// no proof that they are of tubes, and go only where they are clearly of another radius. `up`: unit, against gravity; zero
 /// where it is not known.
-std::vector<TubeClass> find_tube_classes(FilteredCloud& cloud, const ViewProjection& projection,
-                                         const OcclusionTest& occlusion, double noise, bool background_is_known,
-                                         const Vec3& up, const std::vector<double>& told);
+TubeClasses find_tube_classes(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion,
+                              double noise, bool background_is_known, const Vec3& up, const std::vector<double>& told);
 
 }  // namespace tubebin::modeling

@@ -12,10 +12,10 @@
 namespace tubebin::modeling {
 namespace {
 
-/// Largest principal curvature at a point: the symmetric 2 x 2 map from tangent offsets to changes of the normal, by
-/// least squares over its neighbours. 0 where the surface curves both ways.
-double cylinder_curvature(const cloud::Point& p, const cloud::Point& n,
-                          const std::vector<std::pair<cloud::Point, cloud::Point>>& neighbors) {
+/// The principal curvatures at a point, ascending: the symmetric 2 x 2 map from tangent offsets to changes of the normal, by
+/// least squares over its neighbours. Zeros where these are too few to tell.
+Eigen::Vector2d principal_curvatures(const cloud::Point& p, const cloud::Point& n,
+                                     const std::vector<std::pair<cloud::Point, cloud::Point>>& neighbors) {
   const cloud::Point u = n.unitOrthogonal();
   const cloud::Point v = n.cross(u);
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero(), turn = Eigen::Matrix2d::Zero();
@@ -25,11 +25,9 @@ double cylinder_curvature(const cloud::Point& p, const cloud::Point& n,
     scatter += offset * offset.transpose();
     turn += change * offset.transpose();
   }
-  if (scatter.determinant() <= 0.0) return 0.0;
+  if (neighbors.size() < 6 || scatter.determinant() <= 0.0) return Eigen::Vector2d::Zero();
   const Eigen::Matrix2d shape = turn * scatter.inverse();
-  const Eigen::Vector2d k =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(0.5 * (shape + shape.transpose())).eigenvalues();
-  return k(1) > 0.0 && std::abs(k(0)) < 0.3 * k(1) ? k(1) : 0.0;
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(0.5 * (shape + shape.transpose())).eigenvalues();
 }
 
 /// A radius and how much it counts: 1 / variance.
@@ -123,8 +121,13 @@ CurvedPlaces find_curved_places(const std::vector<cloud::Point>& points, const s
           neighbors.emplace_back(points[j], normals[j]);
       }
     }
-    const double curvature = neighbors.size() < 6 ? 0.0 : cylinder_curvature(points[i], normals[i], neighbors);
-    if (curvature > 0.0) places.radii.push_back(1.0 / curvature);
+    const Eigen::Vector2d curvatures = principal_curvatures(points[i], normals[i], neighbors);
+    const double least = curvatures(0), most = curvatures(1);
+    if (most > 0.0 && std::abs(least) < 0.3 * most) places.radii.push_back(1.0 / most);
+    if (least > 0.6 * most) {
+      const double radius = 2.0 / (least + most);
+      places.round.push_back({points[i].cast<double>() - radius * normals[i].cast<double>(), radius});
+    }
   }
   return places;
 }

@@ -8,10 +8,17 @@
 
 namespace tubebin::modeling {
 
+/// A place of a surface that curves alike in all directions, and the ball that it may be of; metres.
+struct RoundPlace {
+  Vec3 center;
+  double radius = 0.0;
+};
+
 /// Radii of curvature at places spread over the surface, metres: on a cylinder, normals turn by 1 / r a metre across the
 /// axis and not at all along it. Places where the surface does not curve that way have none.
 struct CurvedPlaces {
   std::vector<double> radii;
+  std::vector<RoundPlace> round;
   std::size_t looked_at = 0;
 };
 CurvedPlaces find_curved_places(const std::vector<cloud::Point>& points, const std::vector<cloud::Point>& normals,

@@ -1,0 +1,135 @@
+#include "modeling/fitting/ball_finding.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <span>
+
+namespace tubebin::modeling {
+namespace {
+
+/// Of some six hundred that are looked at: a ball's hundredth of the points has six.
+constexpr std::size_t kLeastPlaces = 3;
+
+/// A sphere as points show it, metres.
+struct Sphere {
+  Vec3 center;
+  double radius = 0.0, radius_error = 0.0;
+};
+
+/// Whether both places may be of one ball, which each of them tells to a quarter of its radius.
+bool agree(const RoundPlace& a, const RoundPlace& b) {
+  const double tolerance = (a.radius + b.radius) / 4.0;
+  return std::abs(a.radius - b.radius) < tolerance && (a.center - b.center).norm() < tolerance;
+}
+
+Sphere mean_of(std::span<const RoundPlace> places) {
+  const auto count = static_cast<double>(places.size());
+  Sphere mean{.center = Vec3::Zero()};
+  for (const RoundPlace& place : places) {
+    mean.center += place.center / count;
+    mean.radius += place.radius / count;
+  }
+  return mean;
+}
+
+/// Of some ten thousand of the cloud's points, those within `part` radii of the sphere's surface whose normals are the
+/// sphere's, more or less.
+std::vector<Vec3> points_about(const Sphere& sphere, double part, const FilteredCloud& cloud) {
+  constexpr std::size_t kSample = 20'000;
+  constexpr double kSameDirection = 0.9;  // cosine
+  std::vector<Vec3> about;
+  for (std::size_t i = 0; i < cloud.points.size(); i += cloud.points.size() / kSample + 1) {
+    const Vec3 point = cloud.points[i].cast<double>(), offset = point - sphere.center;
+    const double distance = offset.norm();
+    if (std::abs(distance - sphere.radius) < part * sphere.radius &&
+        offset.dot(cloud.normals[i].cast<double>()) > kSameDirection * distance)
+      about.push_back(point);
+  }
+  return about;
+}
+
+/// The sphere from which the points' distances have the least squares, by Gauss-Newton; none where they are few.
+std::optional<Sphere> fitted(Sphere sphere, const std::vector<Vec3>& points) {
+  constexpr int kSteps = 4;
+  constexpr std::size_t kLeastPoints = 20;
+  if (points.size() < kLeastPoints) return std::nullopt;
+  for (int step = 0; step < kSteps; ++step) {
+    Eigen::Matrix4d normal_matrix = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    double squares = 0.0;
+    for (const Vec3& point : points) {
+      const Vec3 offset = point - sphere.center;
+      const double distance = std::max(offset.norm(), 1e-12), residual = distance - sphere.radius;
+      const Eigen::Vector4d row = (offset / distance).homogeneous();
+      normal_matrix += row * row.transpose();
+      right += residual * row;
+      squares += residual * residual;
+    }
+    const auto factors = normal_matrix.ldlt();
+    const Eigen::Vector4d change = factors.solve(right);
+    const double variance = squares / static_cast<double>(points.size()) * factors.solve(Eigen::Vector4d::UnitW()).w();
+    sphere = {.center = sphere.center + change.head<3>(),
+              .radius = sphere.radius + change.w(),
+              .radius_error = std::sqrt(std::max(variance, 0.0))};
+  }
+  return sphere;
+}
+
+/// From the places' estimate to what ever nearer points show; none where most of what lies about it is not on it.
+std::optional<Sphere> sphere_of(std::span<const RoundPlace> places, const FilteredCloud& cloud, double noise) {
+  constexpr double kOn = 0.02, kAbout = 0.1, kLeastOn = 0.7;
+  const double scatter = 3.0 * noise / mean_of(places).radius;
+  std::optional<Sphere> sphere = mean_of(places);
+  for (const double part : {0.3, 0.2, kAbout, kOn + scatter, kOn + scatter})
+    if (sphere) sphere = fitted(*sphere, points_about(*sphere, part, cloud));
+  if (!sphere) return std::nullopt;
+  const auto on = static_cast<double>(points_about(*sphere, kOn + scatter, cloud).size());
+  const auto about = static_cast<double>(points_about(*sphere, kAbout + scatter, cloud).size());
+  return on > kLeastOn * about ? sphere : std::nullopt;
+}
+
+/// Its evidence is that of its curvature beside a plane's, as a tube's.
+TubePiece piece_of(const Sphere& sphere) {
+  const double deviations = sphere.radius / std::max(sphere.radius_error, 1e-3 * sphere.radius);
+  return {.nodes = {sphere.center}, .radius = sphere.radius, .points = {}, .evidence = 0.5 * deviations * deviations};
+}
+
+bool is_as_thick(const TubePiece& ball, const TubeClass& tubes) {
+  return std::abs(std::log(ball.radius / tubes.radius)) < 0.3;
+}
+
+/// Whether all of the piece's centreline is within the ball.
+bool is_of_ball(const TubePiece& piece, const TubePiece& ball) {
+  return std::ranges::all_of(piece.nodes,
+                             [&](const Vec3& node) { return (node - ball.nodes.front()).norm() < ball.radius; });
+}
+
+}  // namespace
+
+std::vector<TubePiece> find_balls(std::vector<RoundPlace> round, const FilteredCloud& cloud, double noise,
+                                  std::vector<TubeClass>& classes) {
+  std::vector<TubePiece> balls;
+  while (!round.empty()) {
+    const RoundPlace first = round.front();
+    const auto others =
+        std::ranges::stable_partition(round, [&](const RoundPlace& place) { return agree(place, first); });
+    const std::span<const RoundPlace> alike(round.begin(), others.begin());
+    if (alike.size() >= kLeastPlaces)
+      if (const auto sphere = sphere_of(alike, cloud, noise)) balls.push_back(piece_of(*sphere));
+    round.erase(round.begin(), others.begin());
+  }
+  std::erase_if(balls, [&](const TubePiece& ball) {
+    return std::ranges::any_of(classes, [&](const TubeClass& tubes) { return is_as_thick(ball, tubes); });
+  });
+  for (TubeClass& tubes : classes)
+    std::erase_if(tubes.pieces, [&](const TubePiece& piece) {
+      return std::ranges::any_of(balls, [&](const TubePiece& ball) { return is_of_ball(piece, ball); });
+    });
+  std::erase_if(classes, [](const TubeClass& tubes) { return tubes.pieces.empty(); });
+  return balls;
+}
+
+}  // namespace tubebin::modeling
