@@ -7,6 +7,8 @@
 namespace tubebin::modeling {
 namespace {
 
+constexpr double kLongest = 1.0;  // metres, longer than any of these
+
 class BranchJoining : public LidScene {
  protected:
   static TubePath path(std::vector<Vec3> nodes) {
@@ -37,41 +39,40 @@ TEST_F(BranchJoining, ATubeThatEndsBesideAnotherIsNoBranchOfIt) {
 
 TEST_F(BranchJoining, AmongTubesOfOneLengthOnlyWhatIsNotAsLongIsABranch) {
   const auto tubes_of_length = [&](double length, double start) {
-    return join_likely_branches(tree(0.3, start), kRadius, occlusion(), length).tubes;
+    return join_likely_branches(tree(0.3, start), kRadius, occlusion(), length, kLongest).tubes;
   };
   EXPECT_EQ(tubes_of_length(0.0, 0.5 * kRadius).size(), 1u);
   EXPECT_EQ(tubes_of_length(0.5, 0.5 * kRadius).size(), 1u);
   EXPECT_EQ(tubes_of_length(0.3, 0.5 * kRadius).size(), 2u);   // the trunk is whole
   EXPECT_EQ(tubes_of_length(0.35, 0.5 * kRadius).size(), 2u);  // together they are longer
   EXPECT_EQ(tubes_of_length(0.5, 2.1 * kRadius).size(), 2u);
-  EXPECT_TRUE(join_likely_branches({}, kRadius, occlusion(), 0.0).tubes.empty());
+  EXPECT_TRUE(join_likely_branches({}, kRadius, occlusion(), 0.0, kLongest).tubes.empty());
 }
 
 TEST_F(BranchJoining, OnlyASureBranchMakesATubeLongerThanALengthThatRecurs) {
   const auto tubes_beside = [&](std::vector<TubePath> paths, int of_one_length) {
     for (int k = 0; k < of_one_length; ++k)
       paths.push_back(path({{-0.125, -0.2 - 0.1 * k, 0}, {0.125, -0.2 - 0.1 * k, 0}}));
-    return join_likely_branches(paths, kRadius, occlusion(), 0.0).tubes.size() - of_one_length;
+    return join_likely_branches(paths, kRadius, occlusion(), 0.0, kLongest).tubes.size() - of_one_length;
   };
   EXPECT_EQ(tubes_beside(tree(0.0, 2.0 * kRadius), 2), 1u);  // starts under the lid
   EXPECT_EQ(tubes_beside(tree(0.0, 2.0 * kRadius), 3), 2u);
   EXPECT_EQ(tubes_beside(tree(0.0, 0.5 * kRadius), 3), 1u);
 }
 
-TEST_F(BranchJoining, AmongTubesOfAFewLengthsASingleBranchThatIsNotSureIsNone) {
-  const auto tubes_of = [&](double start, double length_beside) {
-    std::vector<TubePath> paths = tree(0.0, start);
-    paths.push_back(path({{-0.15, -0.3, 0}, {length_beside - 0.15, -0.3, 0}}));
-    return join_likely_branches(paths, kRadius, occlusion(), 0.0).tubes.size();
+TEST_F(BranchJoining, OnlyASureBranchMakesATubeLongerThanTheLongestPath) {
+  const auto tubes_where_longest = [&](double length, double start) {
+    return join_likely_branches(tree(0.0, start), kRadius, occlusion(), 0.0, length).tubes.size();
   };
-  EXPECT_EQ(tubes_of(2.0 * kRadius, 0.3), 3u);   // starts under the lid, and the trunk is as long as the tube beside it
-  EXPECT_EQ(tubes_of(2.0 * kRadius, 0.25), 2u);  // of no length that is shared
-  EXPECT_EQ(tubes_of(0.5 * kRadius, 0.3), 2u);   // sure
+  EXPECT_EQ(tubes_where_longest(0.3, 2.0 * kRadius), 2u);  // starts under the lid; together they are 0.4 m
+  EXPECT_EQ(tubes_where_longest(0.4, 2.0 * kRadius), 1u);
+  EXPECT_EQ(tubes_where_longest(0.3, 0.5 * kRadius), 1u);  // sure
 }
 
 TEST_F(BranchJoining, ABranchThatWasFollowedBeyondItsTrunkIsCutBackToIt) {
-  for (const auto join : {join_branches, join_likely_branches}) {
-    const auto tubes = join(tree(0.3, -1.5 * kRadius), kRadius, occlusion(), 0.0).tubes;
+  const std::vector<TubePath> paths = tree(0.3, -1.5 * kRadius);
+  for (const auto& tubes : {join_branches(paths, kRadius, occlusion(), 0.0).tubes,
+                            join_likely_branches(paths, kRadius, occlusion(), 0.0, kLongest).tubes}) {
     ASSERT_EQ(tubes.size(), 1u);
     ASSERT_EQ(tubes[0].paths.size(), 2u);
     EXPECT_NEAR(tubes[0].length(), 0.4, kRadius);
@@ -83,13 +84,13 @@ TEST_F(BranchJoining, ArmsThatAreAlikeByChanceShowNoLengthThatRecurs) {
   std::vector<TubePath> paths = tree(0.0, 2.0 * kRadius);  // starts under the lid
   const double arm = polyline_length(paths[1].nodes);
   for (const double y : {-0.3, -0.4}) paths.push_back(path({{0, y, 0}, {arm, y, 0}}));
-  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0).tubes.size(), 3u);
+  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0, kLongest).tubes.size(), 3u);
 }
 
 /// What tells a branch from a flat end that touches a side is in sight or is not.
 TEST_F(BranchJoining, AFlatEndThatTouchesASideIsABranchOnlyWhereTheWedgeBetweenThemIsHidden) {
   const auto tubes_at = [&](double y) {
-    return join_likely_branches(tree(y, 1.1 * kRadius), kRadius, occlusion(), 0.0).tubes.size();
+    return join_likely_branches(tree(y, 1.1 * kRadius), kRadius, occlusion(), 0.0, kLongest).tubes.size();
   };
   EXPECT_EQ(tubes_at(0.3), 2u);
   EXPECT_EQ(tubes_at(0.0), 1u);  // under the lid

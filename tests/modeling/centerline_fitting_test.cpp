@@ -65,5 +65,24 @@ TEST(CenterlineFitting, MakesNothingOfPointsThatLieOnNoTube) {
   EXPECT_FALSE(fit_all(cloud, kRadius).has_value());
 }
 
+TEST(CenterlineFitting, CutsAPieceWhereItTurnsBackButNotAtAFork) {
+  const TubePiece straight{.nodes = {{0, 0, 0}, {0.1, 0, 0}, {0.2, 0.01, 0}}, .radius = kRadius, .points = {0}};
+  const std::vector<cloud::Point> points = {{0.02f, 0.0f, 0.0125f}, {0.09f, 0.03f, 0.0125f}, {0.0f, 0.14f, 0.0125f}};
+  EXPECT_EQ(cut_where_it_turns_back(straight, points).front().nodes, straight.nodes);
+
+  const TubePiece back{
+      .nodes = {{0, 0, 0}, {0.1, 0, 0}, {0.06, 0.01, 0}, {0.0, 0.15, 0}}, .radius = kRadius, .points = {0, 1, 2}};
+  const std::vector<TubePiece> parts = cut_where_it_turns_back(back, points);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].nodes, (std::vector<Vec3>{{0, 0, 0}, {0.1, 0, 0}}));
+  EXPECT_EQ(parts[1].nodes, (std::vector<Vec3>{{0.1, 0, 0}, {0.06, 0.01, 0}, {0.0, 0.15, 0}}));
+  EXPECT_EQ(parts[0].points, Segment{0});
+  EXPECT_EQ(parts[1].points, (Segment{1, 2}));
+
+  const Vec3 arm = 0.1 * Vec3(-std::cos(radians(40.0)), std::sin(radians(40.0)), 0.0);
+  const TubePiece fork{.nodes = {{0, 0, 0}, {0.1, 0, 0}, Vec3(0.1, 0, 0) + arm}, .radius = kRadius, .points = {}};
+  EXPECT_EQ(cut_where_it_turns_back(fork, points).size(), 1U);
+}
+
 }  // namespace
 }  // namespace tubebin::modeling

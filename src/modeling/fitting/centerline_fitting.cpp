@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "modeling/fitting/end_growth.hpp"
@@ -108,6 +109,21 @@ void drop_sharp_ends(std::vector<Vec3>& nodes, double radius) {
   }
 }
 
+bool turns_back(const std::vector<Vec3>& nodes, std::size_t k) {
+  constexpr double kCosine = -0.9;  // of 154 degrees; trees have paths that turn by 140 at a fork
+  return (nodes[k] - nodes[k - 1]).normalized().dot((nodes[k + 1] - nodes[k]).normalized()) < kCosine;
+}
+
+/// At a fork a node may be drawn out of the trunk toward the branch.
+void drop_spikes(std::vector<Vec3>& nodes, double radius) {
+  for (std::size_t k = 1; k + 1 < nodes.size();) {
+    const std::array<Vec3, 2> beside = {nodes[k - 1], nodes[k + 1]};
+    if (turns_back(nodes, k) && distance_to_polyline(nodes[k], beside) < radius)
+      nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(k));
+    else ++k;
+  }
+}
+
 }  // namespace
 
 double bend_tolerance(std::span<const VoteCurve> curves, double radius) {
@@ -146,6 +162,23 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const VoteCu
   drop_sharp_ends(piece.nodes, radius);
   if (piece.length() < radius / 2.0) return std::nullopt;
   return piece;
+}
+
+std::vector<TubePiece> cut_where_it_turns_back(TubePiece piece, std::span<const cloud::Point> points) {
+  drop_spikes(piece.nodes, piece.radius);
+  std::vector<TubePiece> parts = {{.nodes = {piece.nodes.front()}, .radius = piece.radius, .points = {}}};
+  for (std::size_t k = 1; k + 1 < piece.nodes.size(); ++k) {
+    parts.back().nodes.push_back(piece.nodes[k]);
+    if (turns_back(piece.nodes, k)) parts.push_back({.nodes = {piece.nodes[k]}, .radius = piece.radius, .points = {}});
+  }
+  parts.back().nodes.push_back(piece.nodes.back());
+  if (parts.size() == 1) return {std::move(piece)};
+  std::erase_if(parts, [](const TubePiece& part) { return part.length() < part.radius / 2.0; });
+  for (const std::uint32_t i : piece.points) {
+    const auto off = [&](const TubePiece& part) { return distance_to_polyline(points[i].cast<double>(), part.nodes); };
+    if (!parts.empty()) std::ranges::min_element(parts, {}, off)->points.push_back(i);
+  }
+  return parts;
 }
 
 }  // namespace tubebin::modeling

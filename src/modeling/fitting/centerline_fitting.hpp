@@ -21,4 +21,8 @@ double bend_tolerance(std::span<const VoteCurve> curves, double radius);
 std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const VoteCurve& votes, double tolerance,
                                         std::span<const SurfacePoint> loose, double radius, const Vec3& viewpoint);
 
+/// A piece that turns back goes over from one tube to another, or runs twice along one: its parts, each with the points that
+/// are nearest to it.
+std::vector<TubePiece> cut_where_it_turns_back(TubePiece piece, std::span<const cloud::Point> points);
+
 }  // namespace tubebin::modeling

@@ -1,6 +1,7 @@
 #include "modeling/fitting/centerline_pieces.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "modeling/fitting/branch_splitting.hpp"
 #include "modeling/fitting/centerline_fitting.hpp"
@@ -36,7 +37,7 @@ std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vecto
   for (const VoteCurve& curve : curves) {
     const Vec3 viewpoint = viewpoint_of(cloud, curve.points, projection);
     if (auto piece = fit_centerline(cloud, curve, tolerance, loose, radius, viewpoint))
-      pieces.push_back(std::move(*piece));
+      std::ranges::move(cut_where_it_turns_back(std::move(*piece), cloud.points), std::back_inserter(pieces));
   }
   return pieces;
 }

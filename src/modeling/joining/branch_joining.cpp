@@ -38,25 +38,6 @@ bool links_whole(const BranchLink& link, const std::vector<TubePiece>& paths, do
   return is_whole(paths[link.end / 2]) || is_whole(paths[link.other]);
 }
 
-/// Whether another path is as long, to a radius.
-bool shares_length(const TubePiece& path, const std::vector<TubePiece>& paths) {
-  const auto is_as_long = [&](const TubePiece& other) {
-    return std::abs(other.length() - path.length()) <= path.radius;
-  };
-  return std::ranges::count_if(paths, is_as_long) > 1;
-}
-
-/// Whether nine tenths of what is seen from end to end are paths that share their lengths: the scene's tubes are of a few.
-bool are_of_few_lengths(const std::vector<TubePiece>& paths, const std::vector<PieceEnd>& ends) {
-  double seen = 0.0, shared = 0.0;
-  for (std::size_t k = 0; k < paths.size(); ++k) {
-    if (ends[2 * k].seen_free < 0.5 || ends[2 * k + 1].seen_free < 0.5) continue;
-    seen += paths[k].length();
-    if (shares_length(paths[k], paths)) shared += paths[k].length();
-  }
-  return shared > 0.0 && shared >= 0.9 * seen;
-}
-
 /// The likeliest link of each path: a branch starts at one of its ends.
 void keep_one_of_each_branch(std::vector<BranchLink>& links) {
   std::set<std::uint32_t> branches;
@@ -103,27 +84,25 @@ BranchedTubes join_branches(std::vector<TubePath> paths, double radius, const Oc
 }
 
 BranchedTubes join_likely_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion,
-                                   double tube_length) {
+                                   double tube_length, double longest) {
   if (paths.empty()) return {};
   Branching branching(std::move(paths), radius, occlusion, 0.0);
   const std::vector<TubePiece>& pieces = branching.pieces;
   std::vector<BranchLink>& links = branching.links;
   const double whole = tube_length > 0.0 ? tube_length : recurring_length(pieces);
+  for (const Tree& tree : branching.joiner().likely_trees(kOnSideCost / 2.0)) longest = std::max(longest, tree.length);
+  const auto is_too_long = [&](const BranchLink& link) {
+    const double length = pieces[link.end / 2].length() + pieces[link.other].length();
+    return length > std::min(whole, longest) + 2.0 * radius && (tube_length > 0.0 || link.cost > kOnSideCost);
+  };
   const auto is_no_branch = [&](const BranchLink& link) {
-    const TubePiece &branch = pieces[link.end / 2], &trunk = pieces[link.other];
-    return link.other_end || link.cost >= 0.0 || !is_long(branch) || links_whole(link, pieces, whole) ||
-           ((tube_length > 0.0 || link.cost > kOnSideCost) && branch.length() + trunk.length() > whole + 2.0 * radius);
+    return link.other_end || link.cost >= 0.0 || !is_long(pieces[link.end / 2]) || links_whole(link, pieces, whole) ||
+           is_too_long(link);
   };
   for (BranchLink& link : links) link.cost += kUnfittedCost * link.in_view;
   std::ranges::sort(links, {}, &BranchLink::cost);
   std::erase_if(links, is_no_branch);
   keep_one_of_each_branch(links);
-  // Among tubes of a few lengths, a single one that is not sure is as likely chance.
-  const auto is_chance = [&](const BranchLink& link) {
-    return link.cost > kOnSideCost &&
-           (shares_length(pieces[link.end / 2], pieces) || shares_length(pieces[link.other], pieces));
-  };
-  if (links.size() == 1 && is_chance(links.front()) && are_of_few_lengths(pieces, branching.ends)) links.clear();
   const TreeJoiner joiner = branching.joiner();
   BranchedTubes joining;
   for (Tree& tree : joiner.likely_trees(0.0)) {

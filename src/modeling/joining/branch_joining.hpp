@@ -22,8 +22,9 @@ BranchedTubes join_branches(std::vector<TubePath> paths, double radius, const Oc
 
 /// The same where few tubes branch or none: the paths that start at another's side likelier than not are branches. A path as
 /// long as the tubes have in common (`tube_length`, metres; 0: the longest length that recurs) is whole, neither a branch nor
-/// a trunk. No tube becomes longer, but for what surely branches where lengths merely recur.
+/// a trunk. No tube becomes longer, nor than the `longest` path of the scene (metres), but for what surely branches where no
+/// length is told.
 BranchedTubes join_likely_branches(std::vector<TubePath> paths, double radius, const OcclusionTest& occlusion,
-                                   double tube_length);
+                                   double tube_length, double longest);
 
 }  // namespace tubebin::modeling
