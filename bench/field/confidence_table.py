@@ -73,6 +73,8 @@ def judge(model, points, found, truth):
     bridges, tubes, owners = [], [], {}
     for tube in model['tubes']:
         stretches, joins = stretches_and_bridges(tube)
+        if not stretches:  # a ball
+            continue
         of_stretch = true_tubes(tube, stretches, points, found, truth)
         for a, b, log_odds in joins:
             if of_stretch[a] and of_stretch[b]:

@@ -71,11 +71,11 @@ TEST(CenterlineFitting, CutsAPieceWhereItTurnsBackButNotAtAFork) {
   EXPECT_EQ(cut_where_it_turns_back(straight, points).front().nodes, straight.nodes);
 
   const TubePiece back{
-      .nodes = {{0, 0, 0}, {0.1, 0, 0}, {0.06, 0.01, 0}, {0.0, 0.15, 0}}, .radius = kRadius, .points = {0, 1, 2}};
+      .nodes = {{0, 0, 0}, {0.1, 0, 0}, {0.06, 0.005, 0}, {0.0, 0.15, 0}}, .radius = kRadius, .points = {0, 1, 2}};
   const std::vector<TubePiece> parts = cut_where_it_turns_back(back, points);
   ASSERT_EQ(parts.size(), 2U);
   EXPECT_EQ(parts[0].nodes, (std::vector<Vec3>{{0, 0, 0}, {0.1, 0, 0}}));
-  EXPECT_EQ(parts[1].nodes, (std::vector<Vec3>{{0.1, 0, 0}, {0.06, 0.01, 0}, {0.0, 0.15, 0}}));
+  EXPECT_EQ(parts[1].nodes, (std::vector<Vec3>{{0.1, 0, 0}, {0.06, 0.005, 0}, {0.0, 0.15, 0}}));
   EXPECT_EQ(parts[0].points, Segment{0});
   EXPECT_EQ(parts[1].points, (Segment{1, 2}));
 

@@ -110,7 +110,7 @@ void drop_sharp_ends(std::vector<Vec3>& nodes, double radius) {
 }
 
 bool turns_back(const std::vector<Vec3>& nodes, std::size_t k) {
-  constexpr double kCosine = -0.9;  // of 154 degrees; trees have paths that turn by 140 at a fork
+  constexpr double kCosine = -0.98;  // of 169 degrees; paths of trees that fork narrowly turn nearly as much
   return (nodes[k] - nodes[k - 1]).normalized().dot((nodes[k + 1] - nodes[k]).normalized()) < kCosine;
 }
 

@@ -162,7 +162,7 @@ bool show_branches(const std::vector<TubePiece>& pieces, const std::vector<Piece
   const auto whole = std::ranges::count_if(pieces, [](const TubePiece& piece) { return !is_fragment(piece); });
   std::size_t branches = 0;
   for (std::size_t end = 0; end < ends.size(); ++end) branches += ends[end].is_on_side && is_long(pieces[end / 2]);
-  return branches > 0 && 60 * (branches - 1) > static_cast<std::size_t>(whole);
+  return branches > 0 && 100 * (branches - 1) > static_cast<std::size_t>(whole);
 }
 
 std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, const std::vector<PieceEnd>& ends,

@@ -31,7 +31,7 @@ std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const st
 /// As long as two diameters, longer than the bits of surface beside bends.
 bool is_long(const TubePiece& piece);
 
-/// Whether pieces show that the scene's tubes branch: but for one of them, more than one in sixty is long and meets another's
+/// Whether pieces show that the scene's tubes branch: but for one of them, more than one in a hundred is long and meets another's
 /// side. Of chance one in some thousand does.
 bool show_branches(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends);
 
