@@ -75,8 +75,8 @@ std::function<std::map<ConfinedPath, FileRecord>()> SceneStore::begin_write(cons
     add(name, [bytes = std::move(bytes)](const ByteSink& sink) { sink(bytes); });
   };
   for (const auto& [name, cloud] : clouds)
-    add(name, [&, place = path(scene_name) + "/" + name](const ByteSink& sink) {
-      write_readable(cloud, options_.format, place, sink);
+    add(name, [this, &content_of = cloud, place = path(scene_name) + "/" + name](const ByteSink& sink) {
+      write_readable(content_of, options_.format, place, sink);
     });
   for (auto& [name, bytes] : content.images) add_bytes(name, std::move(bytes));
   add_bytes("scene.json", scene::format_scene_json(content.record));

@@ -180,7 +180,7 @@ std::function<void()> begin_whole_folder(const OutputFolder& output, const Confi
 std::function<void()> begin_whole_folder(const OutputFolder& output, const ConfinedPath& name,
                                          const std::map<std::string, std::string>& files) {
   std::map<std::string, FileWriter> writers;
-  for (const auto& [file, bytes] : files) writers[file] = [&bytes](const ByteSink& sink) { sink(bytes); };
+  for (const auto& [file, bytes] : files) writers[file] = [&all = bytes](const ByteSink& sink) { sink(all); };
   return begin_whole_folder(output, name, writers);
 }
 

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <span>
 
@@ -115,11 +114,11 @@ std::vector<TubePiece> find_balls(std::vector<RoundPlace> round, const FilteredC
   while (!round.empty()) {
     const RoundPlace first = round.front();
     const auto others =
-        std::ranges::stable_partition(round, [&](const RoundPlace& place) { return agree(place, first); });
-    const std::span<const RoundPlace> alike(round.begin(), others.begin());
+        std::stable_partition(round.begin(), round.end(), [&](const RoundPlace& place) { return agree(place, first); });
+    const std::span<const RoundPlace> alike(round.begin(), others);
     if (alike.size() >= kLeastPlaces)
       if (const auto sphere = sphere_of(alike, cloud, noise)) balls.push_back(piece_of(*sphere));
-    round.erase(round.begin(), others.begin());
+    round.erase(round.begin(), others);
   }
   std::erase_if(balls, [&](const TubePiece& ball) {
     return std::ranges::any_of(classes, [&](const TubeClass& tubes) { return is_as_thick(ball, tubes); });
