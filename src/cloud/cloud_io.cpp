@@ -31,7 +31,9 @@ void format_cloud(const Cloud& cloud, CloudFormat format, const ByteSink& sink) 
 }
 
 std::string format_cloud(const Cloud& cloud, CloudFormat format) {
+  constexpr std::size_t kLargestPoint = 24;  // of a binary file
   std::string bytes;
+  bytes.reserve(cloud.size() * kLargestPoint);
   format_cloud(cloud, format, [&bytes](std::string_view block) { bytes += block; });
   return bytes;
 }

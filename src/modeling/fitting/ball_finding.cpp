@@ -1,10 +1,11 @@
 #include "modeling/fitting/ball_finding.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
+
+#include "modeling/sphere_fit.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -12,11 +13,7 @@ namespace {
 /// Of some six hundred that are looked at: a ball's hundredth of the points has six.
 constexpr std::size_t kLeastPlaces = 3;
 
-/// A sphere as points show it, metres.
-struct Sphere {
-  Vec3 center;
-  double radius = 0.0, radius_error = 0.0;
-};
+using Sphere = FittedSphere<3>;
 
 /// Whether both places may be of one ball, which each of them tells to a quarter of its radius.
 bool agree(const RoundPlace& a, const RoundPlace& b) {
@@ -26,7 +23,7 @@ bool agree(const RoundPlace& a, const RoundPlace& b) {
 
 Sphere mean_of(std::span<const RoundPlace> places) {
   const auto count = static_cast<double>(places.size());
-  Sphere mean{.center = Vec3::Zero()};
+  Sphere mean{.center = Vec3::Zero(), .radius = 0.0};
   for (const RoundPlace& place : places) {
     mean.center += place.center / count;
     mean.radius += place.radius / count;
@@ -50,49 +47,26 @@ std::vector<Vec3> points_about(const Sphere& sphere, double part, const Filtered
   return about;
 }
 
-/// The sphere from which the points' distances have the least squares, by Gauss-Newton; none where they are few.
-std::optional<Sphere> fitted(Sphere sphere, const std::vector<Vec3>& points) {
-  constexpr int kSteps = 4;
-  constexpr std::size_t kLeastPoints = 20;
-  if (points.size() < kLeastPoints) return std::nullopt;
-  for (int step = 0; step < kSteps; ++step) {
-    Eigen::Matrix4d normal_matrix = Eigen::Matrix4d::Zero();
-    Eigen::Vector4d right = Eigen::Vector4d::Zero();
-    double squares = 0.0;
-    for (const Vec3& point : points) {
-      const Vec3 offset = point - sphere.center;
-      const double distance = std::max(offset.norm(), 1e-12), residual = distance - sphere.radius;
-      const Eigen::Vector4d row = (offset / distance).homogeneous();
-      normal_matrix += row * row.transpose();
-      right += residual * row;
-      squares += residual * residual;
-    }
-    const auto factors = normal_matrix.ldlt();
-    const Eigen::Vector4d change = factors.solve(right);
-    const double variance = squares / static_cast<double>(points.size()) * factors.solve(Eigen::Vector4d::UnitW()).w();
-    sphere = {.center = sphere.center + change.head<3>(),
-              .radius = sphere.radius + change.w(),
-              .radius_error = std::sqrt(std::max(variance, 0.0))};
-  }
-  return sphere;
-}
-
 /// From the places' estimate to what ever nearer points show; none where most of what lies about it is not on it.
 std::optional<Sphere> sphere_of(std::span<const RoundPlace> places, const FilteredCloud& cloud, double noise) {
   constexpr double kOn = 0.02, kAbout = 0.1, kLeastOn = 0.7;
-  const double scatter = 3.0 * noise / mean_of(places).radius;
-  std::optional<Sphere> sphere = mean_of(places);
-  for (const double part : {0.3, 0.2, kAbout, kOn + scatter, kOn + scatter})
-    if (sphere) sphere = fitted(*sphere, points_about(*sphere, part, cloud));
-  if (!sphere) return std::nullopt;
-  const auto on = static_cast<double>(points_about(*sphere, kOn + scatter, cloud).size());
-  const auto about = static_cast<double>(points_about(*sphere, kAbout + scatter, cloud).size());
-  return on > kLeastOn * about ? sphere : std::nullopt;
+  constexpr std::size_t kLeastPoints = 20;
+  Sphere sphere = mean_of(places);
+  const double scatter = 3.0 * noise / sphere.radius;
+  for (const double part : {0.3, 0.2, kAbout, kOn + scatter, kOn + scatter}) {
+    const std::vector<Vec3> points = points_about(sphere, part, cloud);
+    if (points.size() < kLeastPoints) return std::nullopt;
+    sphere = fit_sphere<3>(points, sphere);
+  }
+  const auto on = static_cast<double>(points_about(sphere, kOn + scatter, cloud).size());
+  const auto about = static_cast<double>(points_about(sphere, kAbout + scatter, cloud).size());
+  return on > kLeastOn * about ? std::optional(sphere) : std::nullopt;
 }
 
 /// Its evidence is that of its curvature beside a plane's, as a tube's.
 TubePiece piece_of(const Sphere& sphere) {
-  const double deviations = sphere.radius / std::max(sphere.radius_error, 1e-3 * sphere.radius);
+  const double error = std::sqrt(std::max(sphere.radius_variance, 0.0));
+  const double deviations = sphere.radius / std::max(error, 1e-3 * sphere.radius);
   return {.nodes = {sphere.center}, .radius = sphere.radius, .points = {}, .evidence = 0.5 * deviations * deviations};
 }
 

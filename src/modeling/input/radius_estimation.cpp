@@ -1,6 +1,5 @@
 #include "modeling/input/radius_estimation.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "modeling/input/view_grid.hpp"
 #include "modeling/median.hpp"
+#include "modeling/sphere_fit.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -35,31 +35,10 @@ struct MeasuredRadius {
   double radius = 0.0, weight = 0.0;
 };
 
-/// Of the circle about the origin, more or less, from which the points' distances have the least squares:
-/// Gauss-Newton from `radius`. (The algebraic fit, which is linear, makes circles too small where there is noise.)
-/// A narrow arc says little of its radius, and its variance shows it.
+/// Of the circle about the origin, more or less, that the points lie on.
 MeasuredRadius fit_circle(const std::vector<Eigen::Vector2d>& points, double radius) {
-  constexpr int kSteps = 4;
-  const auto count = static_cast<double>(points.size());
-  Vec3 circle(0.0, 0.0, radius);  // centre and radius
-  double variance = 0.0;
-  for (int step = 0; step < kSteps; ++step) {
-    Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
-    Vec3 right = Vec3::Zero();
-    double squares = 0.0;
-    for (const Eigen::Vector2d& p : points) {
-      const Eigen::Vector2d offset = p - circle.head<2>();
-      const double distance = std::max(offset.norm(), 1e-12), residual = distance - circle.z();
-      const Vec3 row(offset.x() / distance, offset.y() / distance, 1.0);
-      normal_matrix += row * row.transpose();
-      right += residual * row;
-      squares += residual * residual;
-    }
-    const auto factors = normal_matrix.ldlt();
-    circle += factors.solve(right);
-    variance = squares / count * factors.solve(Vec3::UnitZ()).z();
-  }
-  return {circle.z(), 1.0 / std::max(variance, 1e-18)};
+  const FittedSphere<2> circle = fit_sphere<2>(points, {.center = Eigen::Vector2d::Zero(), .radius = radius});
+  return {circle.radius, 1.0 / std::max(circle.radius_variance, 1e-18)};
 }
 
 /// Of the cylinders that are at least `least_length` long, metres.
