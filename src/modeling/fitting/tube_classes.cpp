@@ -14,6 +14,7 @@
 #include "modeling/fitting/tube_stretches.hpp"
 #include "modeling/input/normals.hpp"
 #include "modeling/input/radius_estimation.hpp"
+#include "modeling/median.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -56,7 +57,8 @@ struct UnsurePiece {
 struct PossibleClass {
   TubeClass sure;
   std::vector<UnsurePiece> unsure;
-  double evidence = 0.0;  ///< nats, of its long pieces
+  double evidence = 0.0;     ///< nats, of its long pieces
+  double typical_off = 0.0;  ///< the median of their curvatures' errors, in units of 1 / radius
 };
 
 /// The classes with those unsure pieces where no other class surely has a tube.
@@ -214,8 +216,9 @@ class ClassFinder {
   PossibleClass pieces_of(const FilteredCloud& cloud, double radius) {
     // Points that lie closer together cost time and add nothing: these make 24 votes a voxel of segment_by_votes.
     const FilteredCloud sample = thinned(cloud, radius / 6.0, projection_, radius);
-    PossibleClass found{.sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}, .evidence = 0.0};
+    PossibleClass found{.sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}};
     double information = 0.0;
+    std::vector<double> offs;
     for (auto& [piece, evidence] : examined_tubes(sample, radius)) {
       if (!all_is_tube() && stands_upright(piece, up_)) {
         standing_.push_back(std::move(piece));
@@ -226,20 +229,25 @@ class ClassFinder {
       piece.evidence = 0.5 * deviations * deviations;
       information += 1.0 / (evidence.curvature_error * evidence.curvature_error);
       const double off = std::abs(evidence.curvature - 1.0);
-      if (piece.length() >= kLeastLength * radius && !is_known(piece, off)) found.evidence += piece.evidence;
+      if (piece.length() >= kLeastLength * radius) {
+        offs.push_back(off);
+        if (!is_known(piece, off)) found.evidence += piece.evidence;
+      }
       if (is_doubtful(piece.length(), radius, piece.evidence) || off > kSureOff + 2.0 * evidence.curvature_error)
         found.unsure.push_back({std::move(piece), off});
       else found.sure.pieces.push_back(std::move(piece));
     }
     if (information > 0.0) found.sure.radius_error = radius / std::sqrt(information);
+    if (!offs.empty()) found.typical_off = median(offs);
     return found;
   }
 
-  /// Whether it fits hardly better than an unsure piece of an earlier class in its place.
+  /// Whether it fits hardly better than an unsure piece of an earlier class in its place, as far as curvatures can be trusted:
+  /// real scans blur them by more than their points scatter.
   bool is_known(const TubePiece& piece, double off) const {
     return std::ranges::any_of(possible_, [&](const PossibleClass& other) {
       return std::ranges::any_of(other.unsure, [&](const UnsurePiece& unsure) {
-        return unsure.off < 2.0 * off && is_inside(piece, unsure.piece);
+        return unsure.off < 2.0 * off + 4.0 * other.typical_off && is_inside(piece, unsure.piece);
       });
     });
   }

@@ -14,8 +14,6 @@ namespace {
 
 /// A link is ruled out where the scan is e^9 times likelier without it.
 constexpr double kLinkCostLimit = 9.0;
-/// -log of how seldom (1 in 8) a branch whose start is in view is not fitted up to the other path's side.
-constexpr double kUnfittedCost = 2.1;
 
 /// The longest length that three of the paths have to a radius, and no less of all that is seen than what is longer: else
 /// arms of forks are alike by chance. Infinite where there is none.
@@ -99,8 +97,6 @@ BranchedTubes join_likely_branches(std::vector<TubePath> paths, double radius, c
     return link.other_end || link.cost >= 0.0 || !is_long(pieces[link.end / 2]) || links_whole(link, pieces, whole) ||
            is_too_long(link);
   };
-  for (BranchLink& link : links) link.cost += kUnfittedCost * link.in_view;
-  std::ranges::sort(links, {}, &BranchLink::cost);
   std::erase_if(links, is_no_branch);
   keep_one_of_each_branch(links);
   const TreeJoiner joiner = branching.joiner();

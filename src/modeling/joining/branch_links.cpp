@@ -33,39 +33,26 @@ std::vector<Vec3> line_between(const Vec3& tip, const Vec3& place, double radius
   return line;
 }
 
-/// What the scan says of a branch's side between its tip and its place on the other path.
-struct SideEvidence {
-  double in_view = 0.0;       ///< part of what is turned to a scanner that is not hidden, but for what fits may miss
-  double seen_through = 0.0;  ///< radii^2, clear of the other path's surface
-};
-
-SideEvidence examine_side(const Vec3& tip, const Vec3& place, const TubePiece& other, const OcclusionTest& occlusion) {
+/// radii^2 of a branch's side between its tip and its place on the other path that a scanner sees through, clear of the
+/// other path's surface.
+double side_seen_through(const Vec3& tip, const Vec3& place, const TubePiece& other, const OcclusionTest& occlusion) {
   using Evidence = RangeImage::Evidence;
   constexpr int kAround = 48;  // samples, and as far apart along the branch
   constexpr double kStep = 2.0 * std::numbers::pi / kAround;
   const double radius = other.radius, length = (place - tip).norm();
   const Vec3 along = (place - tip) / length;
   const Vec3 right = along.unitOrthogonal(), up = along.cross(right);
-  int facing = 0, on_surface = 0, empty = 0, seen_through = 0;
+  int seen_through = 0;
   for (int k = 0; k < kAround; ++k) {
     const Vec3 normal = std::cos(k * kStep) * right + std::sin(k * kStep) * up;
     for (double ahead = 0.5 * kStep * radius; ahead < length; ahead += kStep * radius) {
       const Vec3 at = tip + ahead * along + radius * normal;
       const Evidence seen = occlusion.facing(at, normal);
-      if (seen == Evidence::outside) continue;
-      const double off = distance_to_polyline(at, other.nodes);
-      if (off < radius) continue;
       const bool is_empty = seen == Evidence::empty || seen == Evidence::no_data || seen == Evidence::beyond;
-      ++facing;
-      on_surface += seen == Evidence::surface;
-      empty += is_empty;
-      seen_through += is_empty && off > 1.25 * radius;
+      seen_through += is_empty && distance_to_polyline(at, other.nodes) > 1.25 * radius;
     }
   }
-  // Fits may miss what one scanner sees of a radius' length: pi radii^2.
-  const double missed = std::min(on_surface * kStep * kStep / std::numbers::pi, 1.0);
-  return {.in_view = facing > 0 ? (empty + missed * on_surface) / facing : 0.0,
-          .seen_through = seen_through * kStep * kStep};
+  return seen_through * kStep * kStep;
 }
 
 /// What the scene's paths are like.
@@ -139,9 +126,8 @@ std::optional<BranchLink> side_link(const PieceEnd& end, const TubePiece& other,
   link->cost +=
       kEmptyLinkCost * samples * occlusion.empty_part(line_between(end.position, link->place, around.radius), 1.0);
   if (link->cost >= cost_limit) return std::nullopt;
-  const SideEvidence side = examine_side(end.position, link->place, other, occlusion);
-  link->cost += kEmptyLinkCost * std::min(side.seen_through / kSeenThroughOnce, 1.0);
-  link->in_view = side.in_view;
+  const double seen_through = side_seen_through(end.position, link->place, other, occlusion);
+  link->cost += kEmptyLinkCost * std::min(seen_through / kSeenThroughOnce, 1.0);
   return link->cost < cost_limit ? link : std::nullopt;
 }
 

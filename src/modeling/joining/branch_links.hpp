@@ -19,7 +19,6 @@ struct BranchLink {
       {};                     ///< where it goes on as that path; else it branches off that path's side
   Vec3 place = Vec3::Zero();  ///< where it meets the other path, metres
   double length = 0.0;        ///< from the end to the place, metres
-  double in_view = 0.0;       ///< part of the way there that a scanner sees; 0 of a sure branch and of a join
   double cost = 0.0;          ///< nats: -log of how much likelier the scan is with the link than without
 };
 
