@@ -1,5 +1,6 @@
 /// Tubes from point clouds: one cloud, or every cloud of a data set.
 #include <fmt/ranges.h>
+#include <tbb/global_control.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -124,7 +125,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--scale", arguments.scale, "Factor from the file's unit to metres: 0.001 for millimetres")
       ->check(positive_number("a number above 0, like 0.001 for a file in millimetres"));
   app.add_option("--seed", arguments.seed, "Seed of downsampling and RANSAC")->check(whole_number());
-  app.add_option("-j,--jobs", arguments.jobs, "Worker processes for a data set")
+  app.add_option("-j,--jobs", arguments.jobs, "Worker processes for a data set, cores for one cloud")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   app.add_option("--cases", arguments.cases, "Only the first cases of each set and number of tubes")
@@ -210,6 +211,8 @@ int model_one(const Arguments& arguments) {
     throw_config_error("{} is a file: --ratios, --method both, --cases, --shard and --keep-clouds are for data sets",
                        arguments.input);
   keep_memory();
+  const tbb::global_control cores(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(arguments.jobs));
   results::ModelConfig config = resolve_config(arguments);
   results::CloudToModel input = results::read_cloud_to_model(arguments.input, arguments.scale);
   tell_viewpoints(input, arguments);

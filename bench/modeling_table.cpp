@@ -10,6 +10,7 @@
 #include <pcl/segmentation/region_growing.h>
 #include <pcl/segmentation/sac_segmentation.h>
 #include <sys/resource.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <chrono>
@@ -239,6 +240,8 @@ int main(int argc, char** argv) try {
   std::vector<std::pair<double, std::string>> worst;
   std::uint64_t seed = 0;
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  // As stock PCL does.
+  const tbb::global_control one_core(tbb::global_control::max_allowed_parallelism, 1);
   for (int a = 1; a < argc; ++a) {
     std::vector<fs::path> clouds;
     for (const auto& entry : fs::recursive_directory_iterator(argv[a]))

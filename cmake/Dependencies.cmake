@@ -1,6 +1,7 @@
 # Libraries behind the modules. The installed package reads this file, too: who links a module needs them all.
 include_guard(DIRECTORY)
 find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
 find_package(Eigen3 3.4 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(yaml-cpp REQUIRED)

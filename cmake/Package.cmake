@@ -27,6 +27,6 @@ set(CPACK_DEBIAN_LIBTUBEBIN-DEV_PACKAGE_NAME libtubebin-dev)
 set(CPACK_DEBIAN_LIBTUBEBIN-DEV_PACKAGE_SECTION libdevel)
 string(JOIN ", " CPACK_DEBIAN_LIBTUBEBIN-DEV_PACKAGE_DEPENDS
        libode-dev libembree-dev libpng-dev zlib1g-dev liblzf-dev libeigen3-dev libyaml-cpp-dev
-       nlohmann-json3-dev libfmt-dev libxxhash-dev libarchive-dev libsleef-dev pkg-config)
+       nlohmann-json3-dev libfmt-dev libxxhash-dev libarchive-dev libsleef-dev libtbb-dev pkg-config)
 set(CPACK_COMPONENT_LIBTUBEBIN-DEV_DESCRIPTION "Libraries, headers and CMake package of tubebin")
 include(CPack)

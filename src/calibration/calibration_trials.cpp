@@ -1,5 +1,7 @@
 #include "calibration/calibration_trials.hpp"
 
+#include <tbb/global_control.h>
+
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -145,8 +147,9 @@ void CalibrationTrials::find_missing(const std::vector<Trial>& missing) {
   if (report.signal != 0) throw CalibrationStopped{report.signal};
 }
 
-/// In a worker process.
+/// In a worker process, on one core.
 jobs::AttemptResult CalibrationTrials::attempt(const Trial& trial) const {
+  const tbb::global_control one_core(tbb::global_control::max_allowed_parallelism, 1);
   const results::CloudToModel input = results::read_cloud_to_model(dataset_, {trial.run.scene, trial.run.cloud});
   hashes_.require_recorded(trial.run.scene, input.hashes);
   if (results::truth_labels(input).empty())

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "modeling/parallel.hpp"
+
 namespace tubebin::modeling {
 namespace {
 
@@ -161,18 +163,18 @@ std::vector<SolidCylinder> all_cylinders(const std::vector<TubeSurface>& surface
 
 }  // namespace
 
-std::vector<bool> within_surfaces(std::span<const cloud::Point> points, const std::vector<TubeSurface>& surfaces,
+std::vector<char> within_surfaces(std::span<const cloud::Point> points, const std::vector<TubeSurface>& surfaces,
                                   double tolerance) {
   const std::vector<SolidCylinder> cylinders = all_cylinders(surfaces);
-  std::vector<bool> within(points.size(), false);
+  std::vector<char> within(points.size(), false);
   if (cylinders.empty()) return within;
   const CylinderGrid grid(cylinders, static_cast<float>(tolerance));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto near = grid.near(points[i]);
-    within[i] = std::any_of(near.begin(), near.end(), [&](std::uint32_t c) {
-      return cylinders[c].signed_distance(points[i]) < static_cast<float>(tolerance);
-    });
-  }
+  for_ranges_in_parallel(points.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i)
+      within[i] = std::ranges::any_of(grid.near(points[i]), [&](std::uint32_t c) {
+        return cylinders[c].signed_distance(points[i]) < static_cast<float>(tolerance);
+      });
+  });
   return within;
 }
 
@@ -184,7 +186,7 @@ std::vector<NearestSurface> nearest_surfaces(std::span<const cloud::Point> point
 
   const float widest = std::ranges::max_element(cylinders, {}, &SolidCylinder::radius)->radius;
   const CylinderGrid grid(cylinders, static_cast<float>(std::max({reach.seen, reach.end, reach.bridged})) * widest);
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  const auto find_nearest = [&](std::size_t i) {
     nearest[i].distance = std::numeric_limits<float>::infinity();
     // A cube's cylinders are sorted, so those of one surface follow each other.
     std::uint32_t surface = NearestSurface::kNone;
@@ -203,7 +205,10 @@ std::vector<NearestSurface> nearest_surfaces(std::span<const cloud::Point> point
       limit = cylinders[c].reach_of(points[i], reach);
     }
     keep_if_nearest();
-  }
+  };
+  for_ranges_in_parallel(points.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) find_nearest(i);
+  });
   return nearest;
 }
 

@@ -38,7 +38,7 @@ std::vector<NearestSurface> nearest_surfaces(std::span<const cloud::Point> point
                                              const std::vector<TubeSurface>& surfaces, const Reach& reach);
 
 /// Whether each point is inside one of the surfaces, or outside by less than `tolerance` metres.
-std::vector<bool> within_surfaces(std::span<const cloud::Point> points, const std::vector<TubeSurface>& surfaces,
+std::vector<char> within_surfaces(std::span<const cloud::Point> points, const std::vector<TubeSurface>& surfaces,
                                   double tolerance);
 
 }  // namespace tubebin::modeling

@@ -1,5 +1,7 @@
 #include "tubebin/results/model_dataset.hpp"
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
 #include <chrono>
 #include <map>
@@ -96,9 +98,10 @@ struct Batch {
   OutputFolder results;
 };
 
-/// In a worker process.
+/// In a worker process, on one core.
 jobs::AttemptResult do_run(const ModelingRun& run, const Batch& batch, const BatchOptions& options,
                            const ModelConfig& config) {
+  const tbb::global_control one_core(tbb::global_control::max_allowed_parallelism, 1);
   CloudToModel input;
   modeling::ModelingResult result;
   ModelConfig own = run_config(config, run);

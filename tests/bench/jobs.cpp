@@ -1,6 +1,7 @@
 /// The three small, fixed jobs whose instructions are counted (scripts/instruction_counts.sh): bench_jobs JOB, where JOB
 /// is generate, model or evaluate. Only what happens within run_job() counts; the rest prepares.
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 #include <cstdio>
 #include <functional>
@@ -51,6 +52,8 @@ Job evaluate() {
 extern "C" [[gnu::noinline]] std::size_t tubebin_run_job(const std::function<std::size_t()>& job) { return job(); }
 
 int main(int argc, char** argv) try {
+  // Other threads' instructions would not count.
+  const tbb::global_control one_core(tbb::global_control::max_allowed_parallelism, 1);
   const std::map<std::string, tubebin::Job (*)()> jobs = {
       {"generate", tubebin::generate}, {"model", tubebin::model}, {"evaluate", tubebin::evaluate}};
   const auto job = argc == 2 ? jobs.find(argv[1]) : jobs.end();

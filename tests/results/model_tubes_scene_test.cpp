@@ -113,6 +113,22 @@ TEST_F(ModelTubes, ColoursAndLabelsMakeNoDifference) {
   EXPECT_EQ(with.labels, without.labels);
 }
 
+TEST_F(ModelTubes, ACloudGivesTheSameModelWhateverTheCores) {
+  // Without scene.json, so that the background is found, too.
+  const std::string cloud = folder_ / "cloud.pcd";
+  fs::copy_file(kScene + "/cloud.pcd", cloud);
+  std::vector<json> models;
+  for (const char* cores : {"1", "2", "8"}) {
+    const std::string out = folder_ / cores;
+    const ProgramResult result = model_tubes({cloud, "--output", out, "--full", "--quiet", "--jobs", cores});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    models.push_back(json::parse(read_text(out + "/model.json")));
+    models.back().erase("seconds");
+    EXPECT_EQ(models.back(), models.front());
+    EXPECT_EQ(read_text(out + "/full.pcd"), read_text(folder_ / "1/full.pcd"));
+  }
+}
+
 TEST_F(ModelTubes, ADataSetGivesTheSameBytesWhateverTheJobs) {
   const std::string dataset = make_dataset({"A10/001", "A10/002"});
   const std::string one = folder_ / "one", two = folder_ / "two";

@@ -1,13 +1,13 @@
 #include "modeling/fitting/centerline_pieces.hpp"
 
 #include <algorithm>
-#include <iterator>
 
 #include "modeling/fitting/branch_splitting.hpp"
 #include "modeling/fitting/centerline_fitting.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
 #include "modeling/fitting/flat_ends.hpp"
 #include "modeling/fitting/piece_cleaning.hpp"
+#include "modeling/parallel.hpp"
 #include "tubebin/modeling/filtering.hpp"
 
 namespace tubebin::modeling {
@@ -27,19 +27,19 @@ std::vector<SurfacePoint> loose_points(const FilteredCloud& cloud, const std::ve
 
 std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vector<Segment>& segments,
                                     const ViewProjection& projection, double radius) {
-  std::vector<VoteCurve> curves;
-  for (const Segment& segment : segments)
-    for (Stretch& stretch : split_branches(cloud, segment, radius))
-      curves.push_back(find_vote_curve(cloud, std::move(stretch), radius));
+  const std::vector<VoteCurve> curves = gather_in_parallel(segments.size(), [&](std::size_t k) {
+    std::vector<VoteCurve> of_segment;
+    for (Stretch& stretch : split_branches(cloud, segments[k], radius))
+      of_segment.push_back(find_vote_curve(cloud, std::move(stretch), radius));
+    return of_segment;
+  });
   const double tolerance = bend_tolerance(curves, radius);
   const std::vector<SurfacePoint> loose = loose_points(cloud, segments);
-  std::vector<TubePiece> pieces;
-  for (const VoteCurve& curve : curves) {
-    const Vec3 viewpoint = viewpoint_of(cloud, curve.points, projection);
-    if (auto piece = fit_centerline(cloud, curve, tolerance, loose, radius, viewpoint))
-      std::ranges::move(cut_where_it_turns_back(std::move(*piece), cloud.points), std::back_inserter(pieces));
-  }
-  return pieces;
+  return gather_in_parallel(curves.size(), [&](std::size_t k) {
+    const Vec3 viewpoint = viewpoint_of(cloud, curves[k].points, projection);
+    auto piece = fit_centerline(cloud, curves[k], tolerance, loose, radius, viewpoint);
+    return piece ? cut_where_it_turns_back(std::move(*piece), cloud.points) : std::vector<TubePiece>{};
+  });
 }
 
 /// The selected points as a cloud of their own; `source` are their places in `cloud`.

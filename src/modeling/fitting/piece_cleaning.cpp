@@ -20,9 +20,9 @@ std::vector<std::vector<Vec3>> lengthened(const std::vector<TubePiece>& pieces, 
   return result;
 }
 
-std::vector<bool> explained(std::span<const cloud::Point> points, const std::vector<TubePiece>& pieces,
+std::vector<char> explained(std::span<const cloud::Point> points, const std::vector<TubePiece>& pieces,
                             double spacing) {
-  if (pieces.empty()) return std::vector<bool>(points.size(), false);
+  if (pieces.empty()) return std::vector<char>(points.size(), false);
   const double radius = pieces.front().radius;
   // An end is placed to about a row of points; three cover the row's spacing along a tilted tube.
   const auto nodes = lengthened(pieces, 3.0 * spacing);
@@ -56,7 +56,7 @@ bool cut_end(std::vector<Vec3>& nodes, const std::vector<Vec3>& other, double cl
 
 Segment unexplained_points(const std::vector<cloud::Point>& points, const std::vector<TubePiece>& pieces,
                            double spacing) {
-  const std::vector<bool> is_explained = explained(points, pieces, spacing);
+  const std::vector<char> is_explained = explained(points, pieces, spacing);
   Segment left;
   for (std::uint32_t i = 0; i < points.size(); ++i)
     if (!is_explained[i]) left.push_back(i);
@@ -70,7 +70,7 @@ void drop_explained_pieces(std::vector<TubePiece>& pieces, const std::vector<clo
   std::vector<cloud::Point> thin_points;
   for (auto piece = thin; piece != pieces.end(); ++piece)
     for (const std::uint32_t i : piece->points) thin_points.push_back(points[i]);
-  const std::vector<bool> is_explained = explained(thin_points, well_seen, spacing);
+  const std::vector<char> is_explained = explained(thin_points, well_seen, spacing);
   std::vector<TubePiece> kept = well_seen;
   auto first = is_explained.begin();
   for (auto piece = thin; piece != pieces.end(); ++piece) {

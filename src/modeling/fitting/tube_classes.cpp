@@ -15,6 +15,7 @@
 #include "modeling/input/normals.hpp"
 #include "modeling/input/radius_estimation.hpp"
 #include "modeling/median.hpp"
+#include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -175,14 +176,19 @@ class ClassFinder {
       const PieceEvidence evidence = examine_piece(piece, sample.points, occlusion);
       return std::abs(evidence.curvature - 1.0) <= 0.4 && evidence.empty <= 0.3;
     };
-    std::vector<TubePiece> pieces;
-    for (const Segment& segment : segments) {
+    const auto round_piece = [&](const Segment& segment) {
       // Bends that are cut would make the radius too small.
       const VoteCurve curve = find_vote_curve(sample, {segment, VoteGraph(sample, segment, radius)}, radius);
-      auto piece = fit_centerline(sample, curve, bend_tolerance({}, radius), {}, radius,
-                                  viewpoint_of(sample, segment, projection_));
-      if (piece && is_round(*piece)) pieces.push_back(std::move(*piece));
-      if (pieces.size() == kPieces) break;
+      const auto piece = fit_centerline(sample, curve, bend_tolerance({}, radius), {}, radius,
+                                        viewpoint_of(sample, segment, projection_));
+      return piece && is_round(*piece) ? std::vector{*piece} : std::vector<TubePiece>{};
+    };
+    std::vector<TubePiece> pieces;
+    for (std::size_t next = 0; next < segments.size() && pieces.size() < kPieces;) {
+      const std::size_t count = std::min(kPieces - pieces.size(), segments.size() - next);
+      std::ranges::move(gather_in_parallel(count, [&](std::size_t k) { return round_piece(segments[next + k]); }),
+                        std::back_inserter(pieces));
+      next += count;
     }
     // A ring's surface is no one piece.
     if (pieces.empty())
@@ -199,18 +205,20 @@ class ClassFinder {
     const OcclusionTest occlusion = occlusion_.with_radius(radius);
     const auto examine = [&](const TubePiece& piece) { return examine_piece(piece, sample.points, occlusion); };
     const auto is_tube_by_itself = [&](const TubePiece& piece) { return is_tube(examine(piece), radius, noise_); };
-    std::vector<ExaminedPiece> tubes;
-    for (TubePiece& piece : find_centerline_pieces(sample, segment_by_votes(sample, radius), projection_, radius)) {
-      const PieceEvidence evidence = examine(piece);
+    std::vector<TubePiece> pieces =
+        find_centerline_pieces(sample, segment_by_votes(sample, radius), projection_, radius);
+    return gather_in_parallel(pieces.size(), [&](std::size_t k) {
+      std::vector<ExaminedPiece> tubes;
+      const PieceEvidence evidence = examine(pieces[k]);
       if (all_is_tube() ? !has_other_radius(evidence) : is_tube(evidence, radius, noise_)) {
-        tubes.push_back({std::move(piece), evidence});
+        tubes.push_back({std::move(pieces[k]), evidence});
       } else if (!all_is_tube()) {
-        for (TubePiece& stretch : tube_stretches(piece, sample.points, is_tube_by_itself))
+        for (TubePiece& stretch : tube_stretches(pieces[k], sample.points, is_tube_by_itself))
           if (const PieceEvidence own = examine(stretch); is_tube(own, radius, noise_))
             tubes.push_back({std::move(stretch), own});
       }
-    }
-    return tubes;
+      return tubes;
+    });
   }
 
   PossibleClass pieces_of(const FilteredCloud& cloud, double radius) {

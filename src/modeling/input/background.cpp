@@ -6,6 +6,7 @@
 
 #include "modeling/input/source_views.hpp"
 #include "modeling/input/view_grid.hpp"
+#include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -47,11 +48,15 @@ Background find_background(const ModelingInput& input, const ViewProjection& pro
   if (!background.regions.empty()) background.noise = background.regions.front().noise;
   // A region's outermost blocks are not all its own.
   const double margin = 5.0 * background.spacing;
-  for (const std::uint32_t i : finite) {
-    const Vec3 p = input.points[i].cast<double>();
-    const bool is_flat = std::ranges::any_of(background.regions, [&](const auto& r) { return r.holds(p, margin); });
-    (is_flat ? background.set_aside : background.foreground).push_back(i);
-  }
+  std::vector<char> is_flat(finite.size());
+  for_ranges_in_parallel(finite.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      const Vec3 p = input.points[finite[k]].cast<double>();
+      is_flat[k] = std::ranges::any_of(background.regions, [&](const auto& r) { return r.holds(p, margin); });
+    }
+  });
+  for (std::size_t k = 0; k < finite.size(); ++k)
+    (is_flat[k] ? background.set_aside : background.foreground).push_back(finite[k]);
   return background;
 }
 

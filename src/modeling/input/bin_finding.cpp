@@ -7,6 +7,7 @@
 
 #include "modeling/input/bin_rim.hpp"
 #include "modeling/input/point_sample.hpp"
+#include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -216,16 +217,18 @@ std::ptrdiff_t points_in(const BinFound& bin, const Background& background, std:
 }  // namespace
 
 std::optional<BinFound> find_bin(const Background& background, const Vec3& up, std::span<const cloud::Point> points) {
+  const std::vector<BinFound> bins = gather_in_parallel(background.regions.size(), [&](std::size_t k) {
+    const FlatRegion& floor = background.regions[k];
+    return floor.plane.normal.dot(up) < kAlong ? std::vector<BinFound>{}
+                                               : BinsOnFloor(floor, background, points).find();
+  });
   std::optional<BinFound> best;
   std::ptrdiff_t most = -1;
-  for (const FlatRegion& floor : background.regions) {
-    if (floor.plane.normal.dot(up) < kAlong) continue;
-    for (const BinFound& bin : BinsOnFloor(floor, background, points).find()) {
-      const std::ptrdiff_t count = points_in(bin, background, points);
-      if (count <= most) continue;
-      most = count;
-      best = bin;
-    }
+  for (const BinFound& bin : bins) {
+    const std::ptrdiff_t count = points_in(bin, background, points);
+    if (count <= most) continue;
+    most = count;
+    best = bin;
   }
   return best;
 }

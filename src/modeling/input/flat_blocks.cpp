@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "modeling/median.hpp"
+#include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -49,16 +50,20 @@ class Window {
 /// The median over windows of two by two blocks on surfaces that are flat over four by four.
 double noise_beyond_blocks(const FlatBlocks& blocks) {
   constexpr std::size_t kFew = 20;
-  std::vector<double> ratios;
-  for (int row = 0; row + 3 < blocks.rows(); row += 2)
+  const auto rows = static_cast<std::size_t>(std::max(blocks.rows() - 2, 0) / 2);
+  std::vector<double> ratios = gather_in_parallel(rows, [&](std::size_t k) {
+    const int row = 2 * static_cast<int>(k);
+    std::vector<double> ratios_of_row;
     for (int column = 0; column + 3 < blocks.columns(); column += 2) {
       const Window<4> whole(blocks, row, column);
       if (!whole.is_measured()) continue;
       double variance = 0.0;
       for (const int r : {row, row + 2})
         for (const int c : {column, column + 2}) variance += Window<2>(blocks, r, c).variance() / 4.0;
-      if (whole.variance() < 1.4 * variance) ratios.push_back(variance / whole.variance_within_blocks());
+      if (whole.variance() < 1.4 * variance) ratios_of_row.push_back(variance / whole.variance_within_blocks());
     }
+    return ratios_of_row;
+  });
   return ratios.size() < kFew ? 1.0 : std::max(median(ratios), 1.0);
 }
 
@@ -131,8 +136,10 @@ FlatBlocks::FlatBlocks(const SourceView& view, const PointSpacing& spacing, cons
         view.points[i].cast<double>() - origin);
   }
   residuals_.resize(moments_.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t b = 0; b < moments_.size(); ++b)
-    if (moments_[b].count >= kLeastPoints) residuals_[b] = plane_residual(moments_[b]);
+  for_ranges_in_parallel(size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t b = first; b < last; ++b)
+      if (moments_[b].count >= kLeastPoints) residuals_[b] = plane_residual(moments_[b]);
+  });
 }
 
 double FlatBlocks::roughness() const {
@@ -144,8 +151,11 @@ double FlatBlocks::roughness() const {
 
 FlatWindows::FlatWindows(const FlatBlocks& blocks)
     : noise_beyond_blocks_(modeling::noise_beyond_blocks(blocks)), best_(blocks.size()) {
-  for (int row = 0; row + 1 < blocks.rows(); ++row)
-    for (int column = 0; column + 1 < blocks.columns(); ++column) look_at(blocks, row, column);
+  // A row of windows looks at two rows of blocks: every other one at a time.
+  for (const int first : {0, 1})
+    tbb::parallel_for(first, blocks.rows() - 1, 2, [&](int row) {
+      for (int column = 0; column + 1 < blocks.columns(); ++column) look_at(blocks, row, column);
+    });
 }
 
 void FlatWindows::look_at(const FlatBlocks& blocks, int row, int column) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "modeling/input/flat_blocks.hpp"
+#include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -55,7 +56,12 @@ class Region {
 class RegionGrower {
  public:
   RegionGrower(const FlatBlocks& blocks, const FlatWindows& windows)
-      : blocks_(blocks), windows_(windows), is_taken_(blocks.size(), false) {}
+      : blocks_(blocks), windows_(windows), middles_(blocks.size()), is_taken_(blocks.size(), false) {
+    for_ranges_in_parallel(blocks.size(), [&](std::size_t first, std::size_t last) {
+      for (std::size_t b = first; b < last; ++b)
+        if (windows.is_flat(b)) middles_[b] = {blocks.moments(b).mean(), kOnPlane * blocks.spacing(b)};
+    });
+  }
 
   std::vector<Region> grow_all() {
     std::vector<Region> regions;
@@ -74,18 +80,27 @@ class RegionGrower {
  private:
   static constexpr std::size_t kLeastBlocks = 12;
 
+  struct Middle {
+    Vec3 place = Vec3::Zero();
+    double reach = 0.0;  ///< metres, from a plane that the block lies on, beside noise
+  };
+
   /// Flat blocks among flat ones that agree with them: one at an edge may lean.
   std::vector<std::uint32_t> seeds() const {
-    std::vector<std::uint32_t> seeds;
-    for (std::uint32_t block = 0; block < blocks_.size(); ++block) {
-      if (!windows_.is_flat(block)) continue;
-      int agreeing = 0;
-      for_each_neighbor(block, [&](std::uint32_t next) {
-        agreeing += windows_.is_flat(next) && lies_on(next, windows_.plane(block));
-      });
-      if (agreeing >= 5) seeds.push_back(block);
-    }
-    return seeds;
+    const auto columns = static_cast<std::uint32_t>(blocks_.columns());
+    return gather_in_parallel(static_cast<std::size_t>(blocks_.rows()), [&](std::size_t row) {
+      std::vector<std::uint32_t> seeds_of_row;
+      const std::uint32_t first = static_cast<std::uint32_t>(row) * columns;
+      for (std::uint32_t block = first; block < first + columns; ++block) {
+        if (!windows_.is_flat(block)) continue;
+        int agreeing = 0;
+        for_each_neighbor(block, [&](std::uint32_t next) {
+          agreeing += windows_.is_flat(next) && lies_on(next, windows_.plane(block));
+        });
+        if (agreeing >= 5) seeds_of_row.push_back(block);
+      }
+      return seeds_of_row;
+    });
   }
 
   template <typename Visit>
@@ -99,8 +114,8 @@ class RegionGrower {
   bool lies_on(std::uint32_t block, const FittedPlane& plane) const {
     constexpr double kParallel = 0.99;  // the cosine of 8 degrees
     if (std::abs(windows_.plane(block).normal.dot(plane.normal)) < kParallel) return false;
-    const double off = std::abs((blocks_.moments(block).mean() - plane.center).dot(plane.normal));
-    return off < std::sqrt(plane.mean_square) + kOnPlane * blocks_.spacing(block);
+    const auto& [place, reach] = middles_[block];
+    return std::abs((place - plane.center).dot(plane.normal)) < std::sqrt(plane.mean_square) + reach;
   }
 
   Region grow(std::uint32_t seed) {
@@ -126,6 +141,7 @@ class RegionGrower {
 
   const FlatBlocks& blocks_;
   const FlatWindows& windows_;
+  std::vector<Middle> middles_;  ///< of the flat blocks
   std::vector<bool> is_taken_;
 };
 

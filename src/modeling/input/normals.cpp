@@ -8,6 +8,7 @@
 
 #include "core/lanes.hpp"
 #include "modeling/input/view_grid.hpp"
+#include "modeling/parallel.hpp"
 
 // The sums over neighbours are the most of the modeler's arithmetic, hence TUBEBIN_WIDE.
 
@@ -75,13 +76,45 @@ class Neighborhoods {
   /// In which one point's neighbours are mostly the next one's.
   const std::vector<std::uint32_t>& order() const { return grid_.order(); }
 
-  /// Of the points within the radius, `wider` times, of point i, in the part of the view that the radius covers.
-  Moments around(std::size_t i, float wider) {
-    look_at(i);
-    Moments moments;
-    add_runs(sorted_, runs_, points_[i], wider * wider * radius_ * radius_, moments);
-    return moments;
-  }
+  /// A part of the view, and the points in it.
+  class Window {
+   public:
+    explicit Window(const Neighborhoods& all) : all_(all) {}
+
+    /// Of the points within the radius, `wider` times, of point i, in the part of the view that the radius covers. The next point
+    /// is mostly in the same one.
+    Moments around(std::size_t i, float wider) {
+      look_at(i);
+      Moments moments;
+      add_runs(all_.sorted_, runs_, all_.points_[i], wider * wider * all_.radius_ * all_.radius_, moments);
+      return moments;
+    }
+
+   private:
+    void look_at(std::size_t i) {
+      const ViewProjection::Image image = all_.grid_.image(i);
+      // A radian is 1 + (u^2 + v^2) / 4 units of the stereographic plane.
+      const float units =
+          all_.radius_ / std::max(image.range, all_.radius_) * (1.0f + 0.25f * (image.u * image.u + image.v * image.v));
+      const Place place{all_.grid_.row(i), all_.grid_.column(i), reach_of(units / all_.cell_)};
+      if (place == place_) return;
+      place_ = place;
+      const auto [middle_row, column, reach] = place;
+      runs_.clear();
+      for (int row = middle_row - reach; row <= middle_row + reach; ++row)
+        if (const Run run = all_.grid_.range(row, column - reach, column + reach); run.first < run.second)
+          runs_.push_back(run);
+    }
+
+    struct Place {
+      int row = 0, column = 0, reach = -1;
+      bool operator==(const Place&) const = default;
+    };
+
+    const Neighborhoods& all_;
+    Place place_;            ///< of the point last looked at
+    std::vector<Run> runs_;  ///< of the points in it
+  };
 
  private:
   static float nearest_range(const ViewProjection& projection, std::span<const cloud::Point> points) {
@@ -97,26 +130,6 @@ class Neighborhoods {
     return cells < kReachMax ? static_cast<int>(std::ceil(cells)) : static_cast<int>(kReachMax);
   }
 
-  void look_at(std::size_t i) {
-    const ViewProjection::Image image = grid_.image(i);
-    // A radian is 1 + (u^2 + v^2) / 4 units of the stereographic plane.
-    const float units =
-        radius_ / std::max(image.range, radius_) * (1.0f + 0.25f * (image.u * image.u + image.v * image.v));
-    const Window window{grid_.row(i), grid_.column(i), reach_of(units / cell_)};
-    if (window == window_) return;
-    window_ = window;
-    const auto [middle_row, column, reach] = window;
-    runs_.clear();
-    for (int row = middle_row - reach; row <= middle_row + reach; ++row)
-      if (const Run run = grid_.range(row, column - reach, column + reach); run.first < run.second)
-        runs_.push_back(run);
-  }
-
-  struct Window {
-    int row = 0, column = 0, reach = -1;
-    bool operator==(const Window&) const = default;
-  };
-
   std::span<const cloud::Point> points_;
   float radius_;
   /// Half the radius, as seen at the nearest range: the disc covers most of the 5 x 5 cells searched there, and fewer
@@ -124,8 +137,6 @@ class Neighborhoods {
   float cell_;
   ViewGrid grid_;
   SortedPoints sorted_;
-  Window window_;          ///< of the point last looked at
-  std::vector<Run> runs_;  ///< of the points in it
 };
 
 /// So many planes at a time.
@@ -183,24 +194,27 @@ std::vector<cloud::Point> estimate_normals(const ViewProjection& projection, std
                                            std::span<const cloud::Point> viewpoints) {
   std::vector<cloud::Point> normals((points.size() + stride - 1) / stride, cloud::Point::Zero());
   if (points.empty()) return normals;
-  Neighborhoods neighborhoods(projection, points, radius);
+  const Neighborhoods neighborhoods(projection, points, radius);
   std::vector<std::uint32_t> left = neighborhoods.order();
   std::erase_if(left, [&](std::uint32_t i) { return i % stride != 0; });
   // Where the surface is seen at a flat angle, rows of points that are neighbours in the view lie far apart in space:
   // a wider ball about the same part of the view finds them.
   for (float wider = 1.0f; wider <= 4.0f; wider *= 2.0f) {
-    std::array<Moments, kPlanes> moments;
-    std::array<cloud::Point, kPlanes> to_viewpoint, found;
-    for (std::size_t first = 0; first < left.size(); first += kPlanes) {
-      const std::size_t count = std::min(kPlanes, left.size() - first);
-      for (std::size_t k = 0; k < kPlanes; ++k) {
-        const std::uint32_t i = left[first + std::min(k, count - 1)];
-        moments[k] = neighborhoods.around(i, wider);
-        to_viewpoint[k] = (viewpoints.empty() ? projection.viewpoint() : viewpoints[i]) - points[i];
+    for_ranges_in_parallel(left.size(), [&](std::size_t begin, std::size_t end) {
+      Neighborhoods::Window window(neighborhoods);
+      std::array<Moments, kPlanes> moments;
+      std::array<cloud::Point, kPlanes> to_viewpoint, found;
+      for (std::size_t first = begin; first < end; first += kPlanes) {
+        const std::size_t count = std::min(kPlanes, end - first);
+        for (std::size_t k = 0; k < kPlanes; ++k) {
+          const std::uint32_t i = left[first + std::min(k, count - 1)];
+          moments[k] = window.around(i, wider);
+          to_viewpoint[k] = (viewpoints.empty() ? projection.viewpoint() : viewpoints[i]) - points[i];
+        }
+        plane_normals(moments, to_viewpoint, found);
+        for (std::size_t k = 0; k < count; ++k) normals[left[first + k] / stride] = found[k];
       }
-      plane_normals(moments, to_viewpoint, found);
-      for (std::size_t k = 0; k < count; ++k) normals[left[first + k] / stride] = found[k];
-    }
+    });
     std::erase_if(left, [&](std::uint32_t i) { return !normals[i / stride].isZero(); });
   }
   return normals;
@@ -209,8 +223,12 @@ std::vector<cloud::Point> estimate_normals(const ViewProjection& projection, std
 std::vector<int> count_neighbors(const ViewProjection& projection, std::span<const cloud::Point> points,
                                  double radius) {
   std::vector<int> counts(points.size(), 0);
-  Neighborhoods neighborhoods(projection, points, radius);
-  for (const std::uint32_t i : neighborhoods.order()) counts[i] = static_cast<int>(neighborhoods.around(i, 1.0f).count);
+  const Neighborhoods neighborhoods(projection, points, radius);
+  for_ranges_in_parallel(points.size(), [&](std::size_t first, std::size_t last) {
+    Neighborhoods::Window window(neighborhoods);
+    for (const std::uint32_t i : std::span(neighborhoods.order()).subspan(first, last - first))
+      counts[i] = static_cast<int>(window.around(i, 1.0f).count);
+  });
   return counts;
 }
 

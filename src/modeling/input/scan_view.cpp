@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "modeling/parallel.hpp"
 #include "tubebin/core/wide.hpp"
 
 namespace tubebin::modeling {
@@ -50,7 +51,9 @@ void for_each_image(const ViewProjection& projection, std::span<const cloud::Poi
 
 void ViewProjection::project(std::span<const cloud::Point> points, Images& images) const {
   for (auto* quantity : {&images.u, &images.v, &images.range}) quantity->resize(points.size());
-  project_arrays(*this, points.data(), points.size(), images.u.data(), images.v.data(), images.range.data());
+  for_ranges_in_parallel(points.size(), [&](std::size_t first, std::size_t last) {
+    project_arrays(*this, &points[first], last - first, &images.u[first], &images.v[first], &images.range[first]);
+  });
 }
 
 RangeImage::RangeImage(const ViewProjection& projection, std::span<const cloud::Point> points, float cell)
