@@ -64,6 +64,15 @@ std::vector<cloud::Label> labels_of(const std::vector<NearestSurface>& nearest) 
   return labels;
 }
 
+/// Whether the side of the tube that the point lies on is turned to the viewpoint. Ends, flat or round, are turned anywhere.
+bool is_turned_to(const Vec3& viewpoint, const Vec3& point, const TubeModel& tube) {
+  const auto distance = [&](const TubePath& path) { return distance_to_polyline(point, path.nodes); };
+  const std::vector<Vec3>& nodes = std::ranges::min_element(tube.paths, {}, distance)->nodes;
+  const Vec3 center = nearest_on_polyline(point, nodes);
+  const bool is_at_end = std::min((center - nodes.front()).norm(), (center - nodes.back()).norm()) < tube.radius;
+  return is_at_end || (point - center).dot(viewpoint - point) > 0.0;
+}
+
 /// Half a radius is what a bridge's guessed course may be off, as much again what a scanner strews about an edge. Where a
 /// tube is seen, two fifths of a radius are far more than fits are off, and keeps clear of what it lies on.
 Reach reach_of(const std::vector<TubeModel>& tubes, double noise) {
@@ -85,14 +94,15 @@ std::vector<cloud::Label> label_further_points(std::span<const cloud::Point> poi
 }
 
 std::vector<cloud::Label> label_set_aside(std::span<const cloud::Point> points, const std::vector<TubeModel>& tubes,
-                                          double noise) {
+                                          double noise, const std::function<cloud::Point(std::size_t)>& viewpoint_of) {
   const auto nearest = nearest_tubes(points, tubes, {.seen = 0.2, .end = 0.2, .bridged = 0.2});
-  std::vector<cloud::Label> labels;
-  labels.reserve(points.size());
-  for (const NearestSurface& n : nearest) {
-    const cloud::Label label = label_of(n);
-    const bool is_on = label > 0 && std::abs(double(n.distance)) < 3.0 * noise + 0.02 * tubes[n.surface].radius;
-    labels.push_back(is_on ? label : 0);
+  std::vector<cloud::Label> labels(points.size(), 0);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const NearestSurface& n = nearest[k];
+    if (n.surface == NearestSurface::kNone) continue;
+    const TubeModel& tube = tubes[n.surface];
+    const bool is_on = std::abs(double(n.distance)) < 3.0 * noise + 0.02 * tube.radius;
+    if (is_on && is_turned_to(viewpoint_of(k).cast<double>(), points[k].cast<double>(), tube)) labels[k] = label_of(n);
   }
   return labels;
 }

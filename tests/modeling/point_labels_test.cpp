@@ -48,5 +48,19 @@ TEST(PointLabels, BeyondAnEndLiesTheTubeAndNotTheFloorBeneath) {
   for (std::size_t i = seen + 1; i < points.size(); ++i) EXPECT_EQ(labels.labels[i], 0u) << points[i].transpose();
 }
 
+/// A tube touches a wall that the scanner sees from before it: what is seen where they touch is the wall. From behind it, as
+/// through a wall of wire, it would be the tube.
+TEST(PointLabels, WhereATubeTouchesAWallTheWallIsSeen) {
+  const std::vector<TubeModel> tubes = {model_along({{-0.1, 0, 0}, {0.1, 0, 0}})};
+  const auto wall = static_cast<float>(kRadius);
+  std::vector<cloud::Point> points;
+  for (float x = -0.08f; x <= 0.08f; x += 0.01f) points.emplace_back(x, wall, 0.0f);
+  const auto labels_seen_from = [&](const cloud::Point& viewpoint) {
+    return label_set_aside(points, tubes, 1e-4, [&](std::size_t) { return viewpoint; });
+  };
+  EXPECT_EQ(labels_seen_from({0.0f, -0.2f, 1.5f}), std::vector<cloud::Label>(points.size(), 0));
+  EXPECT_EQ(labels_seen_from({0.0f, 0.2f, 1.5f}), std::vector<cloud::Label>(points.size(), 1));
+}
+
 }  // namespace
 }  // namespace tubebin::modeling
