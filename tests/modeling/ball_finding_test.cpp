@@ -94,5 +94,21 @@ TEST(Ball, IsNoneAlongATube) {
   EXPECT_TRUE(find_balls(places.round, cloud, 0.0, classes).empty());
 }
 
+/// Few points of a tube, as downsampling leaves them, were taken for balls of a metre to 800 km.
+TEST(Ball, IsNoneOnAFlatPatch) {
+  FilteredCloud cloud{.source = {}, .points = {}, .normals = {}, .spacing = 0.001};
+  Random random(7);
+  for (double x = -0.01; x <= 0.01; x += 0.001)
+    for (double y = -0.01; y <= 0.01; y += 0.001) {
+      cloud.points.push_back(Vec3(x, y, 1e-4 * random.normal()).cast<float>());
+      cloud.normals.push_back(Vec3(0, 0, 1).cast<float>());
+    }
+  std::vector<TubeClass> classes;
+  for (const double radius : {0.05, 0.1, 0.3, 1.0, 10.0}) {
+    const std::vector<RoundPlace> round(4, {.center = {0, 0, -radius}, .radius = radius});
+    EXPECT_TRUE(find_balls(round, cloud, 1e-4, classes).empty()) << radius;
+  }
+}
+
 }  // namespace
 }  // namespace tubebin::modeling

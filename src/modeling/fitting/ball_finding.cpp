@@ -31,6 +31,9 @@ Sphere mean_of(std::span<const RoundPlace> places) {
   return mean;
 }
 
+/// Of the radius, metres.
+double error_of(const Sphere& sphere) { return std::sqrt(std::max(sphere.radius_variance, 0.0)); }
+
 /// Of some ten thousand of the cloud's points, those within `part` radii of the sphere's surface whose normals are the
 /// sphere's, more or less.
 std::vector<Vec3> points_about(const Sphere& sphere, double part, const FilteredCloud& cloud) {
@@ -47,17 +50,21 @@ std::vector<Vec3> points_about(const Sphere& sphere, double part, const Filtered
   return about;
 }
 
-/// From the places' estimate to what ever nearer points show; none where most of what lies about it is not on it.
+/// From the places' estimate to what ever nearer points show; none where most of what lies about it is not on it, or where the
+/// points are of a sphere of any radius, as those of a small or flat patch are.
 std::optional<Sphere> sphere_of(std::span<const RoundPlace> places, const FilteredCloud& cloud, double noise) {
-  constexpr double kOn = 0.02, kAbout = 0.1, kLeastOn = 0.7;
+  constexpr double kOn = 0.02, kAbout = 0.1, kLeastOn = 0.7, kMostError = 0.02;
   constexpr std::size_t kLeastPoints = 20;
-  Sphere sphere = mean_of(places);
+  const Sphere estimate = mean_of(places);
+  Sphere sphere = estimate;
   const double scatter = 3.0 * noise / sphere.radius;
   for (const double part : {0.3, 0.2, kAbout, kOn + scatter, kOn + scatter}) {
     const std::vector<Vec3> points = points_about(sphere, part, cloud);
     if (points.size() < kLeastPoints) return std::nullopt;
     sphere = fit_sphere<3>(points, sphere);
+    if (!(std::abs(sphere.radius - estimate.radius) < estimate.radius / 2.0)) return std::nullopt;
   }
+  if (error_of(sphere) > kMostError * sphere.radius) return std::nullopt;
   const auto on = static_cast<double>(points_about(sphere, kOn + scatter, cloud).size());
   const auto about = static_cast<double>(points_about(sphere, kAbout + scatter, cloud).size());
   return on > kLeastOn * about ? std::optional(sphere) : std::nullopt;
@@ -65,8 +72,7 @@ std::optional<Sphere> sphere_of(std::span<const RoundPlace> places, const Filter
 
 /// Its evidence is that of its curvature beside a plane's, as a tube's.
 TubePiece piece_of(const Sphere& sphere) {
-  const double error = std::sqrt(std::max(sphere.radius_variance, 0.0));
-  const double deviations = sphere.radius / std::max(error, 1e-3 * sphere.radius);
+  const double deviations = sphere.radius / std::max(error_of(sphere), 1e-3 * sphere.radius);
   return {.nodes = {sphere.center}, .radius = sphere.radius, .points = {}, .evidence = 0.5 * deviations * deviations};
 }
 
