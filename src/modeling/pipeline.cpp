@@ -223,11 +223,8 @@ void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& opti
   std::vector<cloud::Point> points;
   points.reserve(background.set_aside.size());
   for (const std::uint32_t i : background.set_aside) points.push_back(input.points[i]);
-  const std::vector<cloud::Point> viewpoints = viewpoints_of(input, background.set_aside);
-  const cloud::Point& viewpoint = projection.viewpoint();
-  const auto viewpoint_of = [&](std::size_t k) { return viewpoints.empty() ? viewpoint : viewpoints[k]; };
-  const auto set_aside =
-      label_set_aside(points, result.tubes, std::max(background.noise, labels.noise / 2.0), viewpoint_of);
+  const auto set_aside = label_set_aside(points, result.tubes, std::max(background.noise, labels.noise / 2.0),
+                                         projection, viewpoints_of(input, background.set_aside));
   for (std::size_t k = 0; adds && k < points.size(); ++k) {
     if (set_aside[k] == 0) continue;
     result.source.push_back(background.set_aside[k]);

@@ -94,7 +94,8 @@ std::vector<cloud::Label> label_further_points(std::span<const cloud::Point> poi
 }
 
 std::vector<cloud::Label> label_set_aside(std::span<const cloud::Point> points, const std::vector<TubeModel>& tubes,
-                                          double noise, const std::function<cloud::Point(std::size_t)>& viewpoint_of) {
+                                          double noise, const ViewProjection& projection,
+                                          std::span<const cloud::Point> viewpoints) {
   const auto nearest = nearest_tubes(points, tubes, {.seen = 0.2, .end = 0.2, .bridged = 0.2});
   std::vector<cloud::Label> labels(points.size(), 0);
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -102,7 +103,8 @@ std::vector<cloud::Label> label_set_aside(std::span<const cloud::Point> points, 
     if (n.surface == NearestSurface::kNone) continue;
     const TubeModel& tube = tubes[n.surface];
     const bool is_on = std::abs(double(n.distance)) < 3.0 * noise + 0.02 * tube.radius;
-    if (is_on && is_turned_to(viewpoint_of(k).cast<double>(), points[k].cast<double>(), tube)) labels[k] = label_of(n);
+    const cloud::Point& viewpoint = viewpoints.empty() ? projection.viewpoint() : viewpoints[k];
+    if (is_on && is_turned_to(viewpoint.cast<double>(), points[k].cast<double>(), tube)) labels[k] = label_of(n);
   }
   return labels;
 }

@@ -1,7 +1,6 @@
 /// Labelling (step 5 of the pipeline): every point takes the tube that it lies on.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -25,9 +24,10 @@ std::vector<cloud::Label> label_further_points(std::span<const cloud::Point> poi
                                                const std::vector<TubeModel>& tubes, double noise);
 
 /// Labels of points that were set aside with a plane: a tube's where one's surface explains the point as well, where a
-/// plane cuts through it. Not where the surface is turned away from `viewpoint_of(k)`, where the scanner stood that saw point k:
-/// of a tube along a wall the scanner sees no more there than the wall.
+/// plane cuts through it. Not where the surface is turned away from the point's one of `viewpoints`, or, without any, from the
+/// projection's: of a tube along a wall the scanner sees no more there than the wall.
 std::vector<cloud::Label> label_set_aside(std::span<const cloud::Point> points, const std::vector<TubeModel>& tubes,
-                                          double noise, const std::function<cloud::Point(std::size_t)>& viewpoint_of);
+                                          double noise, const ViewProjection& projection,
+                                          std::span<const cloud::Point> viewpoints);
 
 }  // namespace tubebin::modeling

@@ -55,11 +55,12 @@ TEST(PointLabels, WhereATubeTouchesAWallTheWallIsSeen) {
   const auto wall = static_cast<float>(kRadius);
   std::vector<cloud::Point> points;
   for (float x = -0.08f; x <= 0.08f; x += 0.01f) points.emplace_back(x, wall, 0.0f);
-  const auto labels_seen_from = [&](const cloud::Point& viewpoint) {
-    return label_set_aside(points, tubes, 1e-4, [&](std::size_t) { return viewpoint; });
+  const auto labels_seen_from = [&](const Vec3& viewpoint) {
+    const ViewProjection view(make_pose(Quat(0, 1, 0, 0), viewpoint), cloud::Point::Zero());
+    return label_set_aside(points, tubes, 1e-4, view, {});
   };
-  EXPECT_EQ(labels_seen_from({0.0f, -0.2f, 1.5f}), std::vector<cloud::Label>(points.size(), 0));
-  EXPECT_EQ(labels_seen_from({0.0f, 0.2f, 1.5f}), std::vector<cloud::Label>(points.size(), 1));
+  EXPECT_EQ(labels_seen_from({0.0, -0.2, 1.5}), std::vector<cloud::Label>(points.size(), 0));
+  EXPECT_EQ(labels_seen_from({0.0, 0.2, 1.5}), std::vector<cloud::Label>(points.size(), 1));
 }
 
 }  // namespace
