@@ -64,6 +64,15 @@ TEST(FlatRegions, NoiseThatNeighborsShareHidesNoFloor) {
   EXPECT_GT(regions[0].area, 0.9 * (400 * kStep) * (300 * kStep));
 }
 
+/// Ripples that are far longer than a window of blocks: each window is flat, and the whole is by no means as flat.
+TEST(FlatRegions, AFloorOfRipplesIsOne) {
+  const auto regions = regions_of(
+      picture([](double u, double v) { return 1.0 + 0.0004 * std::sin(u / 0.008) * std::sin(v / 0.008); }, 0.00005));
+  ASSERT_EQ(regions.size(), 1u);
+  EXPECT_NEAR(regions[0].plane.offset, -1.0, 1e-4);
+  EXPECT_GT(regions[0].area, 0.9 * (400 * kStep) * (300 * kStep));
+}
+
 TEST(FlatRegions, AFloorInTwoPartsIsOneAndAStepIsNone) {
   const auto parts = regions_of(picture([](double u, double) { return std::abs(u) < 0.05 ? 0.9 : 1.0; }, 0.0001));
   ASSERT_EQ(parts.size(), 2u);  // the floor on both sides, and the top of what stands on it

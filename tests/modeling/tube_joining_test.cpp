@@ -145,25 +145,28 @@ TEST(Occlusion, SeesTubesThatHangOverTheWall) {
   EXPECT_EQ(occlusion.around({0.05, 0.3, 0.22}, Vec3::UnitY()).empty, 1.0);
 }
 
-/// Of a floor seen from 2 m above, a square of 0.1 m is not measured. Then a slit leads from it to the borders; then only
-/// a cross is measured, as of tubes alone.
-TEST(Occlusion, AGapInAWholePictureMayHideATubeAndOneBetweenTubesAloneDoesNot) {
+/// Of a floor seen from 2 m above, a square of 0.1 m is not measured. Then the sensor is rotated, and the picture fills no
+/// rectangle; then a slit leads from the square to the borders; then only a cross is measured, as of tubes alone.
+TEST(Occlusion, AGapInAPictureMayHideATubeAndOneBetweenTubesAloneDoesNot) {
   std::vector<cloud::Point> floor;
   add_sheet({0, 0, 0}, 0.3, floor);
   std::erase_if(floor, [](const cloud::Point& point) { return point.head<2>().cwiseAbs().maxCoeff() < 0.05f; });
   std::vector<cloud::Point> cut = floor, cross = floor;
   std::erase_if(cut, [](const cloud::Point& point) { return std::abs(point.x()) < 0.01f; });
   std::erase_if(cross, [](const cloud::Point& point) { return point.head<2>().cwiseAbs().minCoeff() > 0.06f; });
-  const Pose world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 2});
-  const auto empty_in_gap = [&](const std::vector<cloud::Point>& points) {
+  const auto empty_in_gap = [](const std::vector<cloud::Point>& points, double rotation) {
+    const Pose world_from_sensor =
+        make_pose(Quat(Eigen::AngleAxisd(rotation, Vec3::UnitZ())) * Quat(0, 1, 0, 0), {0, 0, 2});
     const ModelingInput input{.points = points, .world_from_sensor = world_from_sensor, .bin = std::nullopt};
     return OcclusionTest(input, {world_from_sensor, cloud::Point::Zero()}, kSheetSpacing, kRadius)
         .around({0, 0, kRadius}, Vec3::UnitX())
         .empty;
   };
-  EXPECT_EQ(empty_in_gap(floor), 0.0);
-  EXPECT_EQ(empty_in_gap(cut), 1.0);
-  EXPECT_EQ(empty_in_gap(cross), 1.0);
+  for (const double rotation : {0.0, 0.6}) {
+    EXPECT_EQ(empty_in_gap(floor, rotation), 0.0);
+    EXPECT_EQ(empty_in_gap(cut, rotation), 1.0);
+    EXPECT_EQ(empty_in_gap(cross, rotation), 1.0);
+  }
 }
 
 TEST(Occlusion, LeavesOutWhatIsNotFiniteInAnyCoordinate) {

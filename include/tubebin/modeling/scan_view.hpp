@@ -72,7 +72,7 @@ class RangeImage {
   enum class Evidence {
     beyond,   ///< the scan does not reach there, and is no picture: nothing was measured
     outside,  ///< the scan is a picture that does not reach there
-    missing,  ///< the scanner measured nothing there, and all around it: it failed
+    missing,  ///< the scanner measured nothing there and all around it: it failed
     hidden,   ///< the scanner measured something nearer: what is at the point cannot be seen
     no_data,  ///< the scanner measured nothing in this direction: nothing is in its reach, or it was left out
     surface,  ///< the scanner measured a surface at the point, within the tolerance
@@ -82,15 +82,16 @@ class RangeImage {
   Evidence evidence(const cloud::Point& point, float tolerance) const;
 
  private:
-  bool is_filled_up_to_borders() const;
+  std::size_t cell_at(int row, int column) const { return static_cast<std::size_t>(row * columns_ + column); }
+  bool is_picture() const;
   void mark_gaps();
 
   ViewProjection projection_;
   float inverse_cell_;
   float u_min_ = 0.0f, v_min_ = 0.0f;
   int columns_ = 0, rows_ = 0;
-  std::vector<float> nearest_;  ///< infinity where nothing was measured; negative infinity in gaps of a whole picture
-  bool fills_picture_ = false;  ///< measured up to its borders, and so cut off there
+  std::vector<float> nearest_;  ///< infinity where nothing was measured; negative infinity in gaps of a picture
+  bool is_picture_ = false;     ///< measured nearly everywhere within its outline, and so cut off there
 };
 
 }  // namespace tubebin::modeling

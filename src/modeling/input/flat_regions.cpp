@@ -27,16 +27,19 @@ class Region {
     moments += all.moments(block);
     within += all.residual(block) * all.moments(block).count;
   }
-  /// What is wider than any strip of a tube may be warped. What is narrower has to be flatter than a strip of the thickest
-  /// tube, and of so many points that they can tell.
+  /// What is far wider than any strip of a tube is none, however warped or wavy its scan is; what is wider may be warped a
+  /// little. What is narrower has to be flatter than a strip of the thickest tube, and of so many points that they can tell.
   bool is_flat(const FlatBlocks& all, const FlatWindows& windows) const {
     const double spacing = all.spacing(blocks.front());
     const double noise =
         windows.noise_beyond_blocks() * within / (moments.count - 3.0 * static_cast<double>(blocks.size()));
     const double across = width(spacing);
     // Within h of a plane, a tube's strip is 2 sqrt(2 r h) wide.
-    const double strip = 2.0 * std::sqrt(2.0 * kThickest * spacing * 2.0 * (std::sqrt(noise) + kOnPlane * spacing));
-    if (across > 1.5 * strip) return plane.mean_square < 2.5 * noise + 0.001 * spacing * spacing;
+    const auto strip = [&](double deviation) {
+      return 2.0 * std::sqrt(2.0 * kThickest * spacing * 2.0 * (deviation + kOnPlane * spacing));
+    };
+    if (across > 6.0 * strip(std::sqrt(plane.mean_square))) return true;
+    if (across > 1.5 * strip(std::sqrt(noise))) return plane.mean_square < 2.5 * noise + 0.001 * spacing * spacing;
     // A parabola x^2 / 2 r over a width w is w^2 / (27 r) off its best line, root mean square.
     const double bend = across * across / (27.0 * kThickest * spacing);
     const double excess = 0.5 * bend * bend, error = noise * std::sqrt(2.0 / moments.count);
@@ -52,7 +55,7 @@ class Region {
   }
 };
 
-/// Grows regions from block to block, the surest first.
+/// Grows regions from block to block.
 class RegionGrower {
  public:
   RegionGrower(const FlatBlocks& blocks, const FlatWindows& windows)

@@ -1,6 +1,7 @@
 #include "tubebin/modeling/scan_view.hpp"
 
 #include <algorithm>
+#include <boost/geometry.hpp>
 #include <cmath>
 #include <limits>
 
@@ -24,6 +25,9 @@ ViewProjection::ViewProjection(const Pose& world_from_sensor, const cloud::Point
 }
 
 namespace {
+
+/// Cells in which nothing was measured: anywhere, and within a picture.
+constexpr float kEmpty = std::numeric_limits<float>::infinity(), kGap = -kEmpty;
 
 /// Plain arrays that do not overlap, of which vector instructions are made.
 TUBEBIN_WIDE void project_arrays(const ViewProjection& projection, const cloud::Point* __restrict points,
@@ -72,22 +76,21 @@ RangeImage::RangeImage(const ViewProjection& projection, std::span<const cloud::
   for_each_image(projection, points, [&](const ViewProjection::Image& image) {
     const int column = static_cast<int>((image.u - u_min_) * inverse_cell_);
     const int row = static_cast<int>((image.v - v_min_) * inverse_cell_);
-    float& nearest = nearest_[static_cast<std::size_t>(row * columns_ + column)];
+    float& nearest = nearest_[cell_at(row, column)];
     nearest = std::min(nearest, image.range);
   });
-  fills_picture_ = is_filled_up_to_borders();
-  if (fills_picture_) mark_gaps();
+  is_picture_ = is_picture();
+  if (is_picture_) mark_gaps();
 }
 
 /// Empty cells that no way over empty cells leads to from the border.
 void RangeImage::mark_gaps() {
-  constexpr float kEmpty = std::numeric_limits<float>::infinity(), kGap = -kEmpty;
   for (float& nearest : nearest_)
     if (nearest == kEmpty) nearest = kGap;
   std::vector<std::pair<int, int>> open;  // cells to go on from: row, column
   const auto visit = [&](int row, int column) {
     if (row < 0 || column < 0 || row >= rows_ || column >= columns_) return;
-    float& nearest = nearest_[static_cast<std::size_t>(row * columns_ + column)];
+    float& nearest = nearest_[cell_at(row, column)];
     if (nearest != kGap) return;
     nearest = kEmpty;
     open.emplace_back(row, column);
@@ -101,19 +104,28 @@ void RangeImage::mark_gaps() {
   }
 }
 
-bool RangeImage::is_filled_up_to_borders() const {
-  const auto is_measured = [&](int row, int column) {
-    return nearest_[static_cast<std::size_t>(row * columns_ + column)] < std::numeric_limits<float>::infinity();
-  };
-  // The outermost cells may be half outside.
-  constexpr int kInset = 2;
-  if (rows_ <= 2 * kInset || columns_ <= 2 * kInset) return false;
-  int measured = 0, all = 0;
-  for (int row = kInset; row < rows_ - kInset; ++row)
-    for (const int column : {kInset, columns_ - 1 - kInset}) measured += is_measured(row, column), ++all;
-  for (int column = kInset; column < columns_ - kInset; ++column)
-    for (const int row : {kInset, rows_ - 1 - kInset}) measured += is_measured(row, column), ++all;
-  return 2 * measured > all;
+/// A picture, of any outline and however it is rotated, is measured nearly everywhere within its convex hull. Where tubes stand
+/// alone, most of that is empty.
+bool RangeImage::is_picture() const {
+  namespace geometry = boost::geometry;
+  using Place = geometry::model::d2::point_xy<double>;
+  constexpr double kMeasured = 0.75;
+  std::size_t measured = 0;
+  geometry::model::multi_point<Place> ends_of_rows;
+  for (int row = 0; row < rows_; ++row) {
+    int first = columns_, last = -1;
+    for (int column = 0; column < columns_; ++column) {
+      if (nearest_[cell_at(row, column)] == kEmpty) continue;
+      first = std::min(first, column), last = column;
+      ++measured;
+    }
+    if (last >= 0)
+      for (const int side : {row, row + 1})
+        ends_of_rows.emplace_back(first, side), ends_of_rows.emplace_back(last + 1, side);
+  }
+  geometry::model::polygon<Place> hull;
+  geometry::convex_hull(ends_of_rows, hull);
+  return static_cast<double>(measured) > kMeasured * geometry::area(hull);
 }
 
 RangeImage::Evidence RangeImage::evidence(const cloud::Point& point, float tolerance) const {
@@ -121,8 +133,8 @@ RangeImage::Evidence RangeImage::evidence(const cloud::Point& point, float toler
   const float column = (image.u - u_min_) * inverse_cell_;
   const float row = (image.v - v_min_) * inverse_cell_;
   if (!(column >= 0.0f && row >= 0.0f && column < static_cast<float>(columns_) && row < static_cast<float>(rows_)))
-    return fills_picture_ ? Evidence::outside : Evidence::beyond;
-  const float nearest = nearest_[static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column))];
+    return is_picture_ ? Evidence::outside : Evidence::beyond;
+  const float nearest = nearest_[cell_at(static_cast<int>(row), static_cast<int>(column))];
   if (std::isinf(nearest)) return nearest > 0.0f ? Evidence::no_data : Evidence::missing;
   if (nearest < image.range - tolerance) return Evidence::hidden;
   return nearest > image.range + tolerance ? Evidence::empty : Evidence::surface;
