@@ -44,7 +44,7 @@ void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double 
 FilteredCloud thinned(const FilteredCloud& cloud, double apart, const ViewProjection& projection, double radius);
 
 /// Radius of the neighbourhoods of normals, metres: large enough for some 25 points, which average the noise, where they
-/// lie within half a tube's radius and the surface is nearly flat; else for some 16, within 0.6 radii.
+/// lie within half a tube's radius and the surface is nearly flat; else for some 16, within 0.65 radii.
 double normal_radius(double spacing, double radius);
 
 /// How many points show a stretch of tube that is fully visible, 2 r wide. Both and the points' spacing in metres.

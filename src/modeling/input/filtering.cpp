@@ -83,7 +83,7 @@ std::vector<std::uint32_t> downsample(std::span<const cloud::Point> points, std:
 double normal_radius(double spacing, double radius) {
   const double many = 2.8 * spacing, enough = 2.25 * spacing;  // 2.8^2 pi = 25 points, 16 points
   if (radius <= 0.0) return many;
-  return std::max({std::min(many, 0.5 * radius), std::min(enough, 0.6 * radius), 1.5 * spacing});
+  return std::max({std::min(many, 0.5 * radius), std::min(enough, 0.65 * radius), 1.5 * spacing});
 }
 
 double points_of_visible_stretch(double radius, double length, double spacing) {
