@@ -27,6 +27,12 @@ double longest_step(const std::vector<Vec3>& nodes) {
   return std::sqrt(squared);
 }
 
+Eigen::AlignedBox3d box_of(std::span<const Vec3> nodes) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& node : nodes) box.extend(node);
+  return box;
+}
+
 Vec3 nearest_on_polyline(const Vec3& point, std::span<const Vec3> nodes) {
   Vec3 nearest = nodes.front();
   for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {

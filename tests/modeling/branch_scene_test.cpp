@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "modeling/built_scene.hpp"
+#include "modeling/built_surface.hpp"
 #include "modeling/fitting/branch_splitting.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
 #include "modeling/joining/branch_links.hpp"
@@ -94,6 +95,33 @@ TEST(Branches, SegmentsOfTreesAreTakenApartAndThoseOfChainsAreNot) {
     for (const Stretch& stretch : stretches) points += stretch.segment.size();
     EXPECT_EQ(points, segments[0].size());
   }
+}
+
+/// A hose of 2.8 m, laid to and fro: 560 radii.
+TEST(Branches, AWayOfHundredsOfRadiiIsCutAndMadeWholeAgain) {
+  constexpr double kThin = 0.005;
+  std::vector<Vec3> nodes;
+  for (int row = 0; row < 6; ++row) {
+    const double y = 0.05 * row, side = row % 2 == 0 ? 1.0 : -1.0;
+    for (const Vec3& node : {Vec3(-0.2 * side, y, kThin), Vec3(0.2 * side, y, kThin),
+                             Vec3(0.2125 * side, y + 0.0125, kThin), Vec3(0.2125 * side, y + 0.0375, kThin)})
+      nodes.push_back(node);
+  }
+  FilteredCloud hose = upper_half_of(nodes, kThin);
+  std::size_t stretches = 0;
+  for (const Segment& segment : segment_by_votes(hose, kThin))
+    for (const Stretch& stretch : split_branches(hose, segment, kThin)) {
+      EXPECT_LT(std::ranges::max(stretch.graph.distances_from_end()), 310.0 * kThin);
+      ++stretches;
+    }
+  EXPECT_GE(stretches, 2u);
+  ModelingOptions options;
+  options.radius = kThin;
+  const ModelingInput input{
+      .points = hose.points, .world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 1}), .bin = std::nullopt};
+  const ModelingResult result = model_tubes(input, options);
+  ASSERT_EQ(result.tubes.size(), 1u);
+  EXPECT_NEAR(result.tubes[0].length(), polyline_length(nodes), 0.02);
 }
 
 TEST(Branches, TubesThatHangTogetherByTheirEndsAreTakenApart) {

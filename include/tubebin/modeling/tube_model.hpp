@@ -60,6 +60,9 @@ double polyline_length(const std::vector<Vec3>& nodes);
 /// The largest distance of consecutive nodes, metres.
 double longest_step(const std::vector<Vec3>& nodes);
 
+/// The box that holds the nodes of a polyline.
+Eigen::AlignedBox3d box_of(std::span<const Vec3> nodes);
+
 /// The place of a polyline that is nearest to a point.
 Vec3 nearest_on_polyline(const Vec3& point, std::span<const Vec3> nodes);
 

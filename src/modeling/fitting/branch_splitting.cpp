@@ -42,6 +42,15 @@ std::optional<double> turning_point(const VoteGraph& graph, const std::vector<st
   return turn;
 }
 
+/// Where the way is to be cut, as a distance from the graph's end: where it turns back, or in the middle if it is so long that
+/// to compare each of its points with each of its cylinders would take seconds. Joining makes such a tube whole again.
+std::optional<double> cut_of(const VoteGraph& graph, const std::vector<std::uint32_t>& way, double radius) {
+  constexpr double kLongest = 300.0;  // radii
+  if (const auto turn = turning_point(graph, way, radius)) return turn;
+  const double length = graph.distances_from_end()[way.front()];
+  return length > kLongest * radius ? std::optional(length / 2.0) : std::nullopt;
+}
+
 /// The segment's parts nearer to the graph's end than `cut` metres, and the others.
 std::vector<Segment> cut_across(const VoteGraph& graph, const Segment& segment, double cut) {
   std::vector<Segment> parts(2);
@@ -55,9 +64,9 @@ std::vector<Segment> cut_across(const VoteGraph& graph, const Segment& segment, 
 std::vector<Stretch> split_branches(const FilteredCloud& cloud, const Segment& segment, double radius) {
   VoteGraph graph(cloud, segment, radius);
   const std::vector<std::uint32_t> way = graph.longest_way();
-  if (const auto turn = turning_point(graph, way, radius)) {
+  if (const auto cut = cut_of(graph, way, radius)) {
     std::vector<Stretch> stretches;
-    for (const Segment& part : cut_across(graph, segment, *turn))
+    for (const Segment& part : cut_across(graph, segment, *cut))
       for (Stretch& stretch : split_branches(cloud, part, radius)) stretches.push_back(std::move(stretch));
     return stretches;
   }

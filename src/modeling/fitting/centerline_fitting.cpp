@@ -7,6 +7,7 @@
 
 #include "modeling/fitting/end_growth.hpp"
 #include "modeling/fitting/flat_ends.hpp"
+#include "modeling/fitting/piece_parts.hpp"
 #include "modeling/fitting/surface_fitting.hpp"
 
 namespace tubebin::modeling {
@@ -174,10 +175,7 @@ std::vector<TubePiece> cut_where_it_turns_back(TubePiece piece, std::span<const 
   parts.back().nodes.push_back(piece.nodes.back());
   if (parts.size() == 1) return {std::move(piece)};
   std::erase_if(parts, [](const TubePiece& part) { return part.length() < part.radius / 2.0; });
-  for (const std::uint32_t i : piece.points) {
-    const auto off = [&](const TubePiece& part) { return distance_to_polyline(points[i].cast<double>(), part.nodes); };
-    if (!parts.empty()) std::ranges::min_element(parts, {}, off)->points.push_back(i);
-  }
+  share_points(piece, points, parts);
   return parts;
 }
 

@@ -86,10 +86,13 @@ void cut_overlaps(std::vector<TubePiece>& pieces) {
   std::stable_sort(pieces.begin(), pieces.end(),
                    [](const TubePiece& a, const TubePiece& b) { return a.length() > b.length(); });
   std::vector<bool> is_left(pieces.size(), true);
+  std::vector<Eigen::AlignedBox3d> boxes;  // pieces only get shorter
+  for (const TubePiece& piece : pieces) boxes.push_back(box_of(piece.nodes));
   for (std::size_t a = 0; a < pieces.size(); ++a)
     for (std::size_t b = 0; b < pieces.size() && is_left[a]; ++b) {
       if (a == b || !is_left[b]) continue;
       const double clearance = pieces[a].radius / 2.0, step = pieces[a].radius / 8.0;
+      if (boxes[a].squaredExteriorDistance(boxes[b]) > clearance * clearance) continue;
       for (int end = 0; end < 2 && is_left[a]; ++end) {
         is_left[a] = cut_end(pieces[a].nodes, pieces[b].nodes, clearance, step);
         std::reverse(pieces[a].nodes.begin(), pieces[a].nodes.end());

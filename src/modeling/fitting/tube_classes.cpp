@@ -6,6 +6,7 @@
 #include <iterator>
 #include <optional>
 
+#include "modeling/fitting/branch_splitting.hpp"
 #include "modeling/fitting/centerline_fitting.hpp"
 #include "modeling/fitting/centerline_pieces.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
@@ -178,7 +179,8 @@ class ClassFinder {
     };
     const auto round_piece = [&](const Segment& segment) {
       // Bends that are cut would make the radius too small.
-      const VoteCurve curve = find_vote_curve(sample, {segment, VoteGraph(sample, segment, radius)}, radius);
+      const VoteCurve curve =
+          find_vote_curve(sample, std::move(split_branches(sample, segment, radius).front()), radius);
       const auto piece = fit_centerline(sample, curve, bend_tolerance({}, radius), {}, radius,
                                         viewpoint_of(sample, segment, projection_));
       return piece && is_round(*piece) ? std::vector{*piece} : std::vector<TubePiece>{};

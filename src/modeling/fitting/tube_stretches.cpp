@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "modeling/fitting/piece_parts.hpp"
+
 namespace tubebin::modeling {
 namespace {
 
@@ -28,16 +30,6 @@ std::vector<TubePiece> cut(const TubePiece& piece) {
     own->nodes.push_back(piece.nodes[k]);
   }
   return cut;
-}
-
-/// Gives each point to the stretch that is nearest.
-void share_points(const TubePiece& piece, std::span<const cloud::Point> points, std::vector<TubePiece>& stretches) {
-  for (const std::uint32_t i : piece.points) {
-    const auto distance = [p = Vec3(points[i].cast<double>())](const TubePiece& stretch) {
-      return distance_to_polyline(p, stretch.nodes);
-    };
-    std::ranges::min_element(stretches, {}, distance)->points.push_back(i);
-  }
 }
 
 void append(TubePiece& run, const TubePiece& stretch) {

@@ -68,12 +68,6 @@ double shape_cost(const PieceEnd& a, const PieceEnd& b, double bending_rate, dou
   return join + unseen - other;
 }
 
-Eigen::AlignedBox3d box_of(const std::vector<Vec3>& nodes) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& node : nodes) box.extend(node);
-  return box;
-}
-
 /// A pair whose cost has what was looked into so far.
 struct Examined : PossibleJoin {
   enum class Step : std::uint8_t { shape, occlusion, room } last = Step::shape;
