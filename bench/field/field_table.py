@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Recall and false points of model_tubes on whole clouds, nothing told, by kind of cloud.
 
-  field_table.py MODEL_TUBES FOLDER [--method centerline|region_growing] [--only KIND...] [--check] [-- OPTION...]
+  field_table.py MODEL_TUBES FOLDER [--method centerline|region_growing] [--only KIND...] [--artefact NAME] [--check]
+                 [-- OPTION...]
 
 FOLDER has either depth images with labels (KIND_N.npz: depth, label, depth_of_0, depth_step, hfov, world_from_camera, frame,
 unit, shift, yaw_deg), or is a data set of generate_dataset (SET/CASE/cloud.pcd with its own labels); its clouds are modelled
 without their scene.json, and with --scene beside it; with --calibration-error the cloud has moved by so many millimetres and degrees
-in a random direction, and scene.json has not. OPTIONs go to model_tubes.
+in a random direction, and scene.json has not. With --artefact the depth images are as a scanner with that artefact (artefacts.py)
+has them. OPTIONs go to model_tubes.
 
 recall: share of all tube points of the cloud that carry their tube's label, labels matched one to one (Hungarian).
 false: points of anything else that carry a tube's label, as a share of the tube points. seconds: of all steps, without reading
@@ -21,6 +23,8 @@ from pathlib import Path
 try:
     import numpy as np
     from scipy.optimize import linear_sum_assignment
+
+    from artefacts import ARTEFACTS, with_artefact
 except ImportError as missing:
     print(f'skipped: {missing}')
     sys.exit(77)
@@ -83,13 +87,15 @@ def move(path, to, millimetres, degrees, random):
     to.write_bytes(header.replace(f'VIEWPOINT {viewpoint}', f'VIEWPOINT {new} ').encode() + points.tobytes())
 
 
-def clouds(folder, work, with_scene, calibration_error):
+def clouds(folder, work, with_scene, calibration_error, artefact=None):
     """(kind, cloud file, true label of each of its points, factor to metres) of every cloud."""
+    random = np.random.default_rng(5)
     for path in sorted(Path(folder).glob('*.npz')):
-        image = np.load(path)
+        image = dict(np.load(path))
+        if artefact:
+            image = with_artefact(image, artefact, random)
         write_pcd(image, work / 'cloud.pcd')
         yield path.stem.rsplit('_', 1)[0], work / 'cloud.pcd', image['label'].ravel().astype(int), float(image['unit'])
-    random = np.random.default_rng(5)
     for path in sorted(Path(folder).glob('*/*/cloud.pcd')):
         labels = read_pcd(path)['label'].astype(int)
         if with_scene or any(calibration_error):
@@ -139,6 +145,7 @@ def main():
     parser.add_argument('--only', nargs='*', default=[])
     parser.add_argument('--scene', action='store_true', help='leave scene.json beside the clouds of a data set')
     parser.add_argument('--calibration-error', nargs=2, type=float, default=(0.0, 0.0), metavar=('MM', 'DEG'))
+    parser.add_argument('--artefact', choices=ARTEFACTS)
     parser.add_argument('--check', action='store_true', help='fail where a cloud is far from the rest')
     given = parser.parse_args(arguments)
     if given.check and not Path(given.folder).is_dir():
@@ -146,14 +153,15 @@ def main():
         sys.exit(77)
     kinds = {}
     with tempfile.TemporaryDirectory() as work:
-        for kind, cloud, truth, unit in clouds(given.folder, Path(work), given.scene, given.calibration_error):
+        for kind, cloud, truth, unit in clouds(given.folder, Path(work), given.scene, given.calibration_error,
+                                                given.artefact):
             if given.only and kind not in given.only:
                 continue
             full, seconds = model(given.model_tubes, cloud, unit, ['--method', given.method, *options], Path(work))
             kinds.setdefault(kind, []).append((*score(truth, full), seconds))
     print('| kind | clouds | recall, mean | least | false points, mean | most | count off by more than one | seconds, most |')
     print('| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |')
-    for kind, rows in kinds.items():
+    for kind, rows in [*kinds.items(), ('all', [row for rows in kinds.values() for row in rows])]:
         recall, false, off, seconds = map(np.array, zip(*rows))
         print(f'| {kind} | {len(rows)} | {recall.mean():.4f} | {recall.min():.4f} | {100 * false.mean():.2f} % | '
               f'{100 * false.max():.2f} % | {(abs(off) > 1).sum()} | {seconds.max():.2f} |', flush=True)

@@ -1,0 +1,42 @@
+"""What real scanners do to depth images: each takes depths (metres, of pixels), which of them are measured, the focal length
+(pixels) and a random generator, and returns depths and which are measured."""
+import numpy as np
+from scipy import ndimage
+
+
+def smooth_noise(shape, pixels, random):
+    """Noise of standard deviation 1 that neighbours so many pixels apart share."""
+    noise = ndimage.gaussian_filter(random.normal(size=shape), pixels)
+    return noise / noise.std()
+
+
+def missing(depth, measured, focal, random):
+    """Glare and dark paint: a twelfth of the picture has no data, in patches some ten pixels wide."""
+    patches = smooth_noise(depth.shape, 4, random)
+    return depth, measured & (patches < np.quantile(patches, 11 / 12))
+
+
+def shadow(depth, measured, focal, random):
+    """No data where a projector 0.3 m to the right of the camera gives no light: what is nearer, farther right in the same row,
+    reaches as far to the left as the projector sees it."""
+    seen = np.where(measured, np.arange(depth.shape[1]) - focal * 0.3 / np.where(measured, depth, 1.0), np.inf)
+    nearest = np.minimum.accumulate(seen[:, ::-1], axis=1)[:, ::-1]
+    return depth, measured & (seen < nearest + 1.0)
+
+
+def ripples(depth, measured, focal, random):
+    """Noise of a fifth of the points' spacing that neighbours three pixels apart share, as patterns of light leave it."""
+    return depth + 0.2 * depth / focal * smooth_noise(depth.shape, 3, random), measured
+
+
+ARTEFACTS = {artefact.__name__: artefact for artefact in (missing, shadow, ripples)}
+
+
+def with_artefact(image, artefact, random):
+    """A depth image as field_table.py has it."""
+    step, start = image['depth_step'], image['depth_of_0']
+    depth, measured = start + image['depth'] * step, image['depth'] > 0
+    focal = image['depth'].shape[1] / 2 / np.tan(image['hfov'] / 2)
+    depth, measured = ARTEFACTS[artefact](depth, measured, focal, random)
+    depth = np.where(measured, np.round((depth - start) / step), 0)
+    return {**image, 'depth': np.clip(depth, 0, np.iinfo(image['depth'].dtype).max).astype(image['depth'].dtype)}
