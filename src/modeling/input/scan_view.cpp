@@ -72,7 +72,7 @@ RangeImage::RangeImage(const ViewProjection& projection, std::span<const cloud::
   u_min_ = u_min, v_min_ = v_min;
   columns_ = static_cast<int>((u_max - u_min_) * inverse_cell_) + 1;
   rows_ = static_cast<int>((v_max - v_min_) * inverse_cell_) + 1;
-  nearest_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), kInfinity);
+  nearest_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), kEmpty);
   for_each_image(projection, points, [&](const ViewProjection::Image& image) {
     const int column = static_cast<int>((image.u - u_min_) * inverse_cell_);
     const int row = static_cast<int>((image.v - v_min_) * inverse_cell_);
