@@ -33,7 +33,7 @@ ARTEFACTS = {artefact.__name__: artefact for artefact in (missing, shadow, rippl
 
 
 def with_artefact(image, artefact, random):
-    """A depth image as field_table.py has it."""
+    """The depth image, as field_table.py has it, with the artefact."""
     step, start = image['depth_step'], image['depth_of_0']
     depth, measured = start + image['depth'] * step, image['depth'] > 0
     focal = image['depth'].shape[1] / 2 / np.tan(image['hfov'] / 2)
