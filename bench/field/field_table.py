@@ -151,6 +151,8 @@ def main():
     if given.check and not Path(given.folder).is_dir():
         print(f'skipped: no {given.folder}')
         sys.exit(77)
+    if given.artefact and not any(Path(given.folder).glob('*.npz')):
+        parser.error(f'--artefact {given.artefact}: {given.folder} has no depth images (KIND_N.npz)')
     kinds = {}
     with tempfile.TemporaryDirectory() as work:
         for kind, cloud, truth, unit in clouds(given.folder, Path(work), given.scene, given.calibration_error,
@@ -159,6 +161,8 @@ def main():
                 continue
             full, seconds = model(given.model_tubes, cloud, unit, ['--method', given.method, *options], Path(work))
             kinds.setdefault(kind, []).append((*score(truth, full), seconds))
+    if not kinds:
+        sys.exit(f'{given.folder}: no cloud' + (f' of {", ".join(given.only)}' if given.only else ''))
     print('| kind | clouds | recall, mean | least | false points, mean | most | count off by more than one | seconds, most |')
     print('| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |')
     for kind, rows in [*kinds.items(), ('all', [row for rows in kinds.values() for row in rows])]:

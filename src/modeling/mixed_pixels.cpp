@@ -64,7 +64,7 @@ cloud::Label tube_before(const Ray& ray, const std::vector<TubeModel>& tubes, do
 void label_mixed_pixels(const FilteredCloud& cloud, const ViewProjection& projection,
                         const std::vector<TubeModel>& tubes, std::vector<cloud::Label>& labels) {
   for (const std::uint32_t i : lone_points(cloud, projection, labels)) {
-    const cloud::Point& viewpoint = cloud.viewpoints.empty() ? projection.viewpoint() : cloud.viewpoints[i];
+    const cloud::Point& viewpoint = viewpoint_of(i, cloud.viewpoints, projection);
     const Vec3 offset = (cloud.points[i] - viewpoint).cast<double>();
     const Ray ray{.origin = viewpoint.cast<double>(), .direction = offset.normalized(), .range = offset.norm()};
     labels[i] = tube_before(ray, tubes, cloud.spacing);

@@ -103,7 +103,7 @@ std::vector<cloud::Label> label_set_aside(std::span<const cloud::Point> points, 
     if (n.surface == NearestSurface::kNone) continue;
     const TubeModel& tube = tubes[n.surface];
     const bool is_on = std::abs(double(n.distance)) < 3.0 * noise + 0.02 * tube.radius;
-    const cloud::Point& viewpoint = viewpoints.empty() ? projection.viewpoint() : viewpoints[k];
+    const cloud::Point& viewpoint = viewpoint_of(k, viewpoints, projection);
     if (is_on && is_turned_to(viewpoint.cast<double>(), points[k].cast<double>(), tube)) labels[k] = label_of(n);
   }
   return labels;

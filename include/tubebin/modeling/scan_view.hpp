@@ -61,6 +61,12 @@ class ViewProjection {
   Eigen::Matrix3f axes_from_world_;
 };
 
+/// Where the scanner stood that saw point k: the point's one of `viewpoints`, or, without any, the projection's.
+inline const cloud::Point& viewpoint_of(std::size_t k, std::span<const cloud::Point> viewpoints,
+                                        const ViewProjection& projection) {
+  return viewpoints.empty() ? projection.viewpoint() : viewpoints[k];
+}
+
 /// Nearest measured range in every cell of the view.
 class RangeImage {
  public:

@@ -209,7 +209,7 @@ std::vector<cloud::Point> estimate_normals(const ViewProjection& projection, std
         for (std::size_t k = 0; k < kPlanes; ++k) {
           const std::uint32_t i = left[first + std::min(k, count - 1)];
           moments[k] = window.around(i, wider);
-          to_viewpoint[k] = (viewpoints.empty() ? projection.viewpoint() : viewpoints[i]) - points[i];
+          to_viewpoint[k] = viewpoint_of(i, viewpoints, projection) - points[i];
         }
         plane_normals(moments, to_viewpoint, found);
         for (std::size_t k = 0; k < count; ++k) normals[left[first + k] / stride] = found[k];
