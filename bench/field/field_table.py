@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Recall and false points of model_tubes on whole clouds, nothing told, by kind of cloud.
 
-  field_table.py MODEL_TUBES FOLDER [--method centerline|region_growing] [--only KIND...] [--artefact NAME] [--check]
-                 [-- OPTION...]
+  field_table.py MODEL_TUBES FOLDER [--method centerline|region_growing] [--only KIND...] [--artefact NAME]
+                 [--no-viewpoint] [--check] [-- OPTION...]
 
 FOLDER has either depth images with labels (KIND_N.npz: depth, label, depth_of_0, depth_step, hfov, world_from_camera, frame,
 unit, shift, yaw_deg), or is a data set of generate_dataset (SET/CASE/cloud.pcd with its own labels); its clouds are modelled
@@ -87,15 +87,27 @@ def move(path, to, millimetres, degrees, random):
     to.write_bytes(header.replace(f'VIEWPOINT {viewpoint}', f'VIEWPOINT {new} ').encode() + points.tobytes())
 
 
-def clouds(folder, work, with_scene, calibration_error, artefact=None):
+def forget_viewpoint(points, labels, random):
+    """The measured points (1 x count x 3, metres) and their labels in a random order, in another frame."""
+    order = random.permutation(np.flatnonzero(np.isfinite(points).all(-1)))
+    points, labels = points.reshape(-1, 3)[order], labels[order]
+    return (points - points[labels > 0].mean(0) + [0.8, 0.1, 0.0])[None], labels
+
+
+def clouds(folder, work, with_scene, calibration_error, artefact=None, no_viewpoint=False):
     """(kind, cloud file, true label of each of its points, factor to metres) of every cloud."""
     random = np.random.default_rng(5)
     for path in sorted(Path(folder).glob('*.npz')):
         image = dict(np.load(path))
         if artefact:
             image = with_artefact(image, artefact, random)
-        write_pcd(image, work / 'cloud.pcd')
-        yield path.stem.rsplit('_', 1)[0], work / 'cloud.pcd', image['label'].ravel().astype(int), float(image['unit'])
+        points, viewpoint = points_of(image)
+        labels, unit = image['label'].ravel().astype(int), float(image['unit'])
+        if no_viewpoint:
+            points, labels = forget_viewpoint(points * unit, labels, random)
+            viewpoint, unit = np.zeros(3), 1.0
+        write_organized(points, viewpoint, work / 'cloud.pcd')
+        yield path.stem.rsplit('_', 1)[0], work / 'cloud.pcd', labels, unit
     for path in sorted(Path(folder).glob('*/*/cloud.pcd')):
         labels = read_pcd(path)['label'].astype(int)
         if with_scene or any(calibration_error):
@@ -146,17 +158,19 @@ def main():
     parser.add_argument('--scene', action='store_true', help='leave scene.json beside the clouds of a data set')
     parser.add_argument('--calibration-error', nargs=2, type=float, default=(0.0, 0.0), metavar=('MM', 'DEG'))
     parser.add_argument('--artefact', choices=ARTEFACTS)
+    parser.add_argument('--no-viewpoint', action='store_true', help='unordered points, and the file does not say from where')
     parser.add_argument('--check', action='store_true', help='fail where a cloud is far from the rest')
     given = parser.parse_args(arguments)
     if given.check and not Path(given.folder).is_dir():
         print(f'skipped: no {given.folder}')
         sys.exit(77)
-    if given.artefact and not any(Path(given.folder).glob('*.npz')):
-        parser.error(f'--artefact {given.artefact}: {given.folder} has no depth images (KIND_N.npz)')
+    of_images = '--artefact' if given.artefact else '--no-viewpoint' if given.no_viewpoint else ''
+    if of_images and not any(Path(given.folder).glob('*.npz')):
+        parser.error(f'{of_images}: {given.folder} has no depth images (KIND_N.npz)')
     kinds = {}
     with tempfile.TemporaryDirectory() as work:
         for kind, cloud, truth, unit in clouds(given.folder, Path(work), given.scene, given.calibration_error,
-                                                given.artefact):
+                                                given.artefact, given.no_viewpoint):
             if given.only and kind not in given.only:
                 continue
             full, seconds = model(given.model_tubes, cloud, unit, ['--method', given.method, *options], Path(work))

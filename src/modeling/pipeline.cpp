@@ -1,5 +1,7 @@
 #include "tubebin/modeling/pipeline.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -18,9 +20,9 @@
 #include "modeling/input/bin_finding.hpp"
 #include "modeling/input/bin_pose.hpp"
 #include "modeling/input/bin_rim.hpp"
-#include "modeling/input/grid_viewpoint.hpp"
 #include "modeling/input/hanging_tubes.hpp"
 #include "modeling/input/normals.hpp"
+#include "modeling/input/viewpoint_check.hpp"
 #include "modeling/joining/class_joining.hpp"
 #include "modeling/mixed_pixels.hpp"
 #include "modeling/point_labels.hpp"
@@ -161,9 +163,9 @@ void crop(Background& background, const ModelingInput& input, const ModelingOpti
 }
 
 /// Outliers and others that lie alone make a foreground's points seem farther apart than they lie in all of the scan (both
-/// metres; 0: unknown). At the edges of thin tubes they seem so by a seventh.
+/// metres; 0: unknown). At the edges of thin tubes they seem so by a seventh. A few in one place seem to lie too close.
 double spacing_without_lone_points(double of_foreground, double of_scan) {
-  return of_scan > 0.0 ? std::min(of_foreground, 1.25 * of_scan) : of_foreground;
+  return of_scan > 0.0 ? std::clamp(of_foreground, 0.25 * of_scan, 1.25 * of_scan) : of_foreground;
 }
 
 /// The option's up direction, or that of a known bin; zero where neither tells it.
@@ -181,15 +183,21 @@ struct FilteredScene {
   FilteredCloud cloud;
 };
 
-FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& options) {
-  ModelingInput input = told;
-  std::vector<cloud::Point> measured = without_zero_points(told.points);
-  if (!measured.empty()) input.points = measured;
+/// An empty bin shows its own floor or walls.
+void require_points_in_bin(const ModelingInput& input, const Background& background) {
+  if (!input.bin || !background.foreground.empty()) return;
+  if (beside_bin(input, background.set_aside, 0.0).size() == background.set_aside.size())
+    throw IoError("no point lies in the bin: is its place right, and is the cloud in metres?");
+}
+
+/// Step 1 from the input's viewpoint.
+FilteredScene filter_from_viewpoint(ModelingInput input, const ModelingOptions& options) {
   SceneFound found;
-  if (std::string doubt = check_viewpoint(input); !doubt.empty()) found.doubts.push_back(std::move(doubt));
+  const bool tells_bin = input.bin.has_value();
   const ViewProjection projection = view_of(input);
   Background background = find_surroundings(input, projection, options.filtering);
-  if (told.bin && !input.bin) found.doubts.push_back("the bin that was told is not in the cloud: is its pose right?");
+  require_points_in_bin(input, background);
+  if (tells_bin && !input.bin) found.doubts.push_back("the bin that was told is not in the cloud: is its pose right?");
   describe_scene(background, projection, told_up(input, options), found);
   for (const Pose& pose : input.world_from_further_sensors) found.further_viewpoints.push_back(pose.translation());
   found.bin = input.bin ? std::optional(BinFound{.world_from_bin = input.world_from_bin,
@@ -204,7 +212,35 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
   crop(background, input, options);
   FilteredCloud cloud = filter(input, projection, background.foreground, options.filtering, options.seed);
   cloud.spacing = spacing_without_lone_points(cloud.spacing, background.spacing / std::sqrt(options.filtering.ratio));
-  return {std::move(measured), std::move(input), std::move(found), projection, std::move(background), std::move(cloud)};
+  return {.measured = {},
+          .input = std::move(input),
+          .found = std::move(found),
+          .projection = projection,
+          .background = std::move(background),
+          .cloud = std::move(cloud)};
+}
+
+/// Step 1 from where the scanner stood, as far as that is known.
+FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& options) {
+  ModelingInput input = told;
+  std::vector<cloud::Point> measured = without_zero_points(told.points);
+  if (!measured.empty()) input.points = measured;
+  ViewpointCheck viewpoint = check_viewpoint(input);
+  FilteredScene scene = filter_from_viewpoint(input, options);
+  // Twice: the other side of a wrong viewpoint may be another wrong one.
+  for (int turn = 0; turn < 2 && !viewpoint.is_certain && is_seen_from_behind(scene.cloud, scene.projection); ++turn) {
+    if (viewpoint.doubt.empty()) viewpoint.doubt = "its surfaces look hollow from there";
+    look_from_the_other_side(input);
+    scene = filter_from_viewpoint(input, options);
+  }
+  if (!viewpoint.doubt.empty())
+    scene.found.doubts.insert(
+        scene.found.doubts.begin(),
+        fmt::format("the cloud was not seen from {}, as VIEWPOINT or --viewpoint has it: {}; {} is taken instead",
+                    place_text(told.world_from_sensor.translation()), viewpoint.doubt,
+                    place_text(scene.found.viewpoint)));
+  scene.measured = std::move(measured);
+  return scene;
 }
 
 /// Labels of the filtered points, and of those that a plane took from a tube.
@@ -215,8 +251,8 @@ void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& opti
   result.noise = labels.noise;
   result.labels = std::move(labels.labels);
   result.source = std::move(cloud.source);
-  const auto unexplained = std::ranges::count(result.labels, cloud::Label{0});
-  result.found.unexplained = static_cast<double>(unexplained) / static_cast<double>(result.labels.size());
+  const auto unexplained = static_cast<double>(std::ranges::count(result.labels, cloud::Label{0}));
+  result.found.unexplained = unexplained / std::max(static_cast<double>(result.labels.size()), 1.0);
   const bool adds = options.filtering.ratio >= 1.0 && !input.bin;
   if (!adds && !options.label_all) return;
 

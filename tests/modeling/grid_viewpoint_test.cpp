@@ -1,19 +1,15 @@
 #include "modeling/input/grid_viewpoint.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "modeling/built_scene.hpp"
+#include <cmath>
+#include <limits>
+
+#include "tubebin/core/geometry.hpp"
+#include "tubebin/core/random.hpp"
 
 namespace tubebin::modeling {
 namespace {
-
-using ::testing::HasSubstr;
-
-scene::Scene two_tubes() {
-  return scene_of({tube_along({{-0.2, 0.03, kRadius}, {0.0, 0.03, kRadius}, {0.1, -0.1, kRadius}}),
-                   tube_along({{0.02, -0.15, 3 * kRadius}, {-0.02, 0.15, 3 * kRadius}})});
-}
 
 /// As a camera at `place`, turned by `pose`, sees the surface z = height(x, y), by Newton's steps along each ray.
 template <typename Height>
@@ -62,31 +58,6 @@ TEST(GridViewpoint, IsNowhereWhereThePointsDoNotSay) {
   for (cloud::Point& point : anywhere) point = Vec3(random.normal(), random.normal(), random.normal()).cast<float>();
   EXPECT_FALSE(viewpoint_of_grid(anywhere, 160));
   EXPECT_FALSE(viewpoint_of_grid(std::span(anywhere).first(50), 10));
-}
-
-TEST(GridViewpoint, ReplacesAWrongOneAndSaysSo) {
-  const scene::Scene scene = two_tubes();
-  const cloud::Cloud cloud = scan::scan(scene).cloud;
-  ASSERT_TRUE(cloud.organized());
-  ModelingInput input{
-      .points = cloud.points, .world_from_sensor = cloud.world_from_sensor, .bin = {}, .width = cloud.width};
-  const ModelingResult told = model_tubes(input, {});
-  EXPECT_TRUE(told.found.doubts.empty());
-  input.world_from_sensor.translation() = Vec3::Zero();  // a file in the bin's frame that says nothing
-  const ModelingResult found = model_tubes(input, {});
-  ASSERT_EQ(found.found.doubts.size(), 1u);
-  EXPECT_THAT(found.found.doubts.front(), HasSubstr("not seen from (0.000, 0.000, 0.000)"));
-  EXPECT_LT((found.found.viewpoint - cloud.world_from_sensor.translation()).norm(), 0.01);
-  EXPECT_EQ(found.tubes.size(), told.tubes.size());
-  EXPECT_NEAR(micro_recall_of(found, cloud), micro_recall_of(told, cloud), 0.001);
-}
-
-TEST(GridViewpoint, IsDoubtedInTheMidstOfPointsInAnyOrder) {
-  const cloud::Cloud cloud = scan::scan(two_tubes()).cloud;
-  ModelingInput input{.points = cloud.points, .world_from_sensor = cloud.world_from_sensor, .bin = {}};
-  EXPECT_EQ(check_viewpoint(input), "");
-  input.world_from_sensor.translation() = Vec3(0, 0, 0.02);
-  EXPECT_THAT(check_viewpoint(input), HasSubstr("all around"));
 }
 
 }  // namespace

@@ -79,6 +79,16 @@ TEST(RangeImage, LeavesOutWhatIsNotFinite) {
             RangeImage::Evidence::beyond);
 }
 
+TEST(RangeImage, TakesNoMoreCellsThanFitIntoMemory) {
+  const std::vector<cloud::Point> points = {{0.1f, 0.2f, 0.0f}, {-0.3f, -0.2f, 0.1f}, {0.0f, 0.0f, 0.9999f}};
+  for (const float cell : {1e-7f, 0.0f}) {
+    const RangeImage image(view_from_above(), points, cell);
+    for (const cloud::Point& point : points) EXPECT_EQ(image.evidence(point, 0.001f), RangeImage::Evidence::surface);
+    EXPECT_EQ(RangeImage(view_from_above(), std::span(points).first(1), cell).evidence(points.front(), 0.001f),
+              RangeImage::Evidence::surface);
+  }
+}
+
 TEST(Normals, AreThoseOfAnEigensolver) {
   constexpr double kReach = 0.004;
   const HalfTube tube(3000);

@@ -1,5 +1,6 @@
 #include "tubebin/modeling/pipeline.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -10,6 +11,9 @@
 
 namespace tubebin::modeling {
 namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 constexpr double kR = kRadius;
 
@@ -384,6 +388,38 @@ TEST(Pipeline, MakesNoTubesOfNoise) {
       .points = points, .world_from_sensor = scene::Scanner{}.world_from_scanner(), .bin = scene::Bin{}};
   for (const ModelingMethod method : {ModelingMethod::centerline, ModelingMethod::region_growing})
     EXPECT_TRUE(model_tubes(input, known_radius(method)).tubes.empty());
+}
+
+TEST(Pipeline, AFlatCloudWithHardlyAPointMoreHasNoTubes) {
+  Random random(10);
+  std::vector<cloud::Point> table;
+  for (int i = 0; i < 50000; ++i)
+    table.emplace_back(static_cast<float>(random.uniform(-0.25, 0.25)), static_cast<float>(random.uniform(-0.15, 0.15)),
+                       static_cast<float>(1e-4 * random.normal()));
+  for (const std::vector<cloud::Point>& more : {std::vector<cloud::Point>{{0.1f, 0.0f, 0.1f}},
+                                                {{0.1f, 0.0f, 0.1f}, {0.1f, 0.0f, 0.1f}, {0.1f, 0.0f, 0.1000001f}}}) {
+    std::vector<cloud::Point> points = table;
+    points.insert(points.end(), more.begin(), more.end());
+    const ModelingResult found =
+        model_tubes({.points = points, .world_from_sensor = scene::Scanner{}.world_from_scanner(), .bin = {}}, {});
+    EXPECT_TRUE(found.tubes.empty());
+    EXPECT_EQ(found.found.doubts.size(), 1u);
+  }
+}
+
+TEST(Pipeline, AnEmptyBinHasNoTubes) {
+  const cloud::Cloud cloud = scan::scan(scene_of({})).cloud;
+  ModelingOptions all = known_radius();
+  all.label_all = true;
+  for (const ModelingInput& input :
+       {input_of(cloud, scene::Bin{}),
+        ModelingInput{.points = cloud.points, .world_from_sensor = cloud.world_from_sensor, .bin = {}}})
+    for (const ModelingOptions& options : {ModelingOptions{}, all, known_radius(ModelingMethod::region_growing)}) {
+      const ModelingResult found = model_tubes(input, options);
+      EXPECT_TRUE(found.tubes.empty());
+      EXPECT_EQ(std::ranges::count(found.labels, cloud::Label{0}), std::ssize(found.labels));
+      EXPECT_THAT(found.found.doubts, ElementsAre(HasSubstr("nothing in the cloud is round")));
+    }
 }
 
 TEST(Pipeline, ACloudWithoutAPointInTheBinIsRefused) {

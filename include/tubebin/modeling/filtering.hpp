@@ -29,7 +29,7 @@ struct FilteredCloud {
 };
 
 /// The filtered cloud, yet without normals: of the points at `indices`, all that may be the tubes', a random part stays.
-/// Throws IoError where no point is left.
+/// Empty where no point is left.
 FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, std::vector<std::uint32_t> indices,
                      const FilteringOptions& options, std::uint64_t seed);
 

@@ -70,7 +70,8 @@ inline const cloud::Point& viewpoint_of(std::size_t k, std::span<const cloud::Po
 /// Nearest measured range in every cell of the view.
 class RangeImage {
  public:
-  /// `cell` is the cells' size in the plane of the projection. Points that are not finite are left out.
+  /// `cell` is the cells' size in the plane of the projection, larger where that would take too much memory. Points that are
+  /// not finite are left out.
   RangeImage(const ViewProjection& projection, std::span<const cloud::Point> points, float cell);
 
   /// In ascending order of what counts where several scanners look: empty is what one of them saw through, hidden what is
@@ -93,7 +94,7 @@ class RangeImage {
   void mark_gaps();
 
   ViewProjection projection_;
-  float inverse_cell_;
+  float inverse_cell_ = 1.0f;
   float u_min_ = 0.0f, v_min_ = 0.0f;
   int columns_ = 0, rows_ = 0;
   std::vector<float> nearest_;  ///< infinity where nothing was measured; negative infinity in gaps of a picture

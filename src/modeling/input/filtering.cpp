@@ -8,7 +8,6 @@
 #include "modeling/input/normals.hpp"
 #include "modeling/input/source_views.hpp"
 #include "modeling/input/view_grid.hpp"
-#include "tubebin/core/error.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -104,7 +103,7 @@ ViewProjection view_of(const ModelingInput& input) {
 FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, std::vector<std::uint32_t> indices,
                      const FilteringOptions& options, std::uint64_t seed) {
   if (options.remove_outliers) indices = remove_outliers(input, projection, indices);
-  if (indices.empty()) throw IoError("no point lies in the bin: is its place right, and is the cloud in metres?");
+  if (indices.empty()) return {};
   indices = downsample(input.points, std::move(indices), options.ratio, seed);
 
   // In the order of the scanner's view, which the points' positions alone determine.

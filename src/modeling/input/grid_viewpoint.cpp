@@ -1,15 +1,10 @@
 #include "modeling/input/grid_viewpoint.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <vector>
-
-#include "modeling/scene_found.hpp"
-#include "tubebin/core/geometry.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -87,32 +82,6 @@ std::optional<Vec3> viewpoint_of(const std::vector<Sample>& samples, std::uint32
 
 std::optional<Vec3> viewpoint_of_grid(std::span<const cloud::Point> points, std::uint32_t width) {
   return viewpoint_of(sample_grid(points, width), width);
-}
-
-std::string check_viewpoint(ModelingInput& input) {
-  constexpr double kFarOff = 15.0;  // degrees, as the points see it
-  // A scanner's view is narrower than a right angle about its axis; of directions all around, the mean is next to nothing.
-  constexpr double kAllAround = 0.5;
-  const Vec3 told = input.world_from_sensor.translation();
-  const std::vector<Sample> samples = sample_grid(input.points, std::max(input.width, 1U));
-  if (samples.empty()) return {};
-  const Vec3 middle = middle_of(samples);
-  const auto seen = input.width > 0 ? viewpoint_of(samples, input.width) : std::nullopt;
-  if (seen) {
-    const double off =
-        std::acos(std::clamp((told - middle).normalized().dot((*seen - middle).normalized()), -1.0, 1.0));
-    if (off < radians(kFarOff)) return {};
-    input.world_from_sensor.translation() = *seen;
-    return fmt::format(
-        "the cloud was not seen from {}, as VIEWPOINT or --viewpoint has it: by its rows and columns the scanner stood at "
-        "{}, which is taken",
-        place_text(told), place_text(*seen));
-  }
-  Vec3 directions = Vec3::Zero();
-  for (const Sample& sample : samples) directions += (sample.point - told).normalized();
-  if (directions.norm() > kAllAround * static_cast<double>(samples.size())) return {};
-  return fmt::format("points lie all around the viewpoint {}: where did the scanner stand (VIEWPOINT or --viewpoint)?",
-                     place_text(told));
 }
 
 }  // namespace tubebin::modeling

@@ -15,4 +15,10 @@ inline std::vector<Vec3> sample_of(std::span<const cloud::Point> points, std::si
   return sample;
 }
 
+inline Vec3 middle_of(std::span<const Vec3> points) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& point : points) sum += point;
+  return sum / static_cast<double>(points.size());
+}
+
 }  // namespace tubebin::modeling

@@ -103,6 +103,7 @@ CurvedPlaces find_curved_places(const std::vector<cloud::Point>& points, const s
     const Eigen::Vector2d curvatures = principal_curvatures(points[i], normals[i], neighbors);
     const double least = curvatures(0), most = curvatures(1);
     if (most > 0.0 && std::abs(least) < 0.3 * most) places.radii.push_back(1.0 / most);
+    if (least < 0.0 && std::abs(most) < -0.3 * least) ++places.hollow;
     if (least > 0.6 * most) {
       const double radius = 2.0 / (least + most);
       places.round.push_back({points[i].cast<double>() - radius * normals[i].cast<double>(), radius});

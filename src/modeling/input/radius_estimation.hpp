@@ -19,6 +19,7 @@ struct RoundPlace {
 struct CurvedPlaces {
   std::vector<double> radii;
   std::vector<RoundPlace> round;
+  std::size_t hollow = 0;  ///< that curve like the inside of a cylinder
   std::size_t looked_at = 0;
 };
 CurvedPlaces find_curved_places(const std::vector<cloud::Point>& points, const std::vector<cloud::Point>& normals,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "modeling/input/view_grid.hpp"
 #include "modeling/parallel.hpp"
 #include "tubebin/core/wide.hpp"
 
@@ -61,7 +62,7 @@ void ViewProjection::project(std::span<const cloud::Point> points, Images& image
 }
 
 RangeImage::RangeImage(const ViewProjection& projection, std::span<const cloud::Point> points, float cell)
-    : projection_(projection), inverse_cell_(1.0f / cell) {
+    : projection_(projection) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   float u_min = kInfinity, v_min = kInfinity, u_max = -kInfinity, v_max = -kInfinity;
   for_each_image(projection, points, [&](const ViewProjection::Image& image) {
@@ -70,6 +71,7 @@ RangeImage::RangeImage(const ViewProjection& projection, std::span<const cloud::
   });
   if (u_max < u_min) return;
   u_min_ = u_min, v_min_ = v_min;
+  inverse_cell_ = 1.0f / std::max({cell, static_cast<float>(smallest_cell(u_max - u_min, v_max - v_min)), 1e-9f});
   columns_ = static_cast<int>((u_max - u_min_) * inverse_cell_) + 1;
   rows_ = static_cast<int>((v_max - v_min_) * inverse_cell_) + 1;
   nearest_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), kEmpty);

@@ -11,11 +11,6 @@
 namespace tubebin::modeling {
 namespace {
 
-/// No grid takes more memory than this many cells need, however far apart its points lie.
-constexpr double kMostCells = 1 << 24;
-/// The same for points on a line, whose area is 0.
-constexpr double kMostCellsInARow = 1 << 20;
-
 struct Extent {
   float u_min = std::numeric_limits<float>::infinity(), v_min = u_min;
   float u_max = -u_min, v_max = -u_min;
@@ -25,12 +20,7 @@ struct Extent {
     for (const float v : images.v) v_min = std::min(v_min, v), v_max = std::max(v_max, v);
   }
   double area() const { return double(u_max - u_min) * double(v_max - v_min); }
-
-  /// The smallest cell that keeps a grid over it within its memory.
-  double smallest_cell() const {
-    const double longer_side = std::max(double(u_max - u_min), double(v_max - v_min));
-    return std::max(std::sqrt(area() / kMostCells), longer_side / kMostCellsInARow);
-  }
+  double smallest_cell() const { return modeling::smallest_cell(u_max - u_min, v_max - v_min); }
 };
 
 /// How many cells of this size hold a point.
@@ -48,6 +38,12 @@ std::ptrdiff_t count_occupied(const ViewProjection::Images& images, const Extent
 }
 
 }  // namespace
+
+double smallest_cell(double width, double height) {
+  constexpr double kMostCells = 1 << 24;
+  constexpr double kMostCellsInARow = 1 << 20;  // of points on a line, whose area is 0
+  return std::max(std::sqrt(width * height / kMostCells), std::max(width, height) / kMostCellsInARow);
+}
 
 ViewGrid::ViewGrid(ViewProjection::Images images, std::span<const cloud::Point> points, float cell)
     : images_(std::move(images)) {

@@ -9,6 +9,9 @@
 
 namespace tubebin::modeling {
 
+/// The smallest cell that keeps a grid over such an extent within its memory, however far apart its points lie.
+double smallest_cell(double width, double height);
+
 class ViewGrid {
  public:
   /// `cell`: size of the cells in the plane of the projection.

@@ -1,0 +1,96 @@
+#include "modeling/input/open_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "modeling/input/point_sample.hpp"
+#include "modeling/parallel.hpp"
+#include "tubebin/modeling/scan_view.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// Where coordinates lie but for the outermost hundredth at each end.
+struct Span {
+  float low, high;
+
+  explicit Span(std::vector<float> coordinates) {
+    const auto at = [&](double share) {
+      const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(coordinates.size() - 1));
+      std::ranges::nth_element(coordinates, coordinates.begin() + k);
+      return coordinates[static_cast<std::size_t>(k)];
+    };
+    low = at(0.01), high = at(0.99);
+  }
+  float length() const { return high - low; }
+  bool holds(float coordinate) const { return coordinate >= low && coordinate <= high; }
+};
+
+/// Unit directions, spread evenly over the sphere along a golden spiral.
+std::vector<Vec3> directions_around(std::size_t count) {
+  const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  std::vector<Vec3> directions;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double z = 1.0 - (2.0 * static_cast<double>(k) + 1.0) / static_cast<double>(count);
+    const double across = std::sqrt(1.0 - z * z), angle = golden_angle * static_cast<double>(k);
+    directions.emplace_back(across * std::cos(angle), across * std::sin(angle), z);
+  }
+  return directions;
+}
+
+}  // namespace
+
+double hidden_share(std::span<const Vec3> points, const Vec3& viewpoint) {
+  // Cells of some four points; what is deeper behind the nearest than four cells are wide is no surface that leans.
+  constexpr float kPointsOfCell = 4.0f, kCellsDeep = 4.0f;
+  if (points.empty()) return 0.0;
+  const auto count = static_cast<float>(points.size());
+  const ViewProjection projection(Pose(Eigen::Translation3d(viewpoint)), middle_of(points).cast<float>());
+  ViewProjection::Images images;
+  for (const Vec3& point : points) {
+    const ViewProjection::Image image = projection(point.cast<float>());
+    images.u.push_back(image.u), images.v.push_back(image.v), images.range.push_back(image.range);
+  }
+  const Span u(images.u), v(images.v);
+  const float cell = std::max({std::sqrt(kPointsOfCell * u.length() * v.length() / count), u.length() / count,
+                               v.length() / count, std::numeric_limits<float>::min()});
+  const auto columns = static_cast<std::size_t>(u.length() / cell) + 1;
+  const auto rows = static_cast<std::size_t>(v.length() / cell) + 1;
+  const auto cell_of = [&](std::size_t i) {
+    return static_cast<std::size_t>((images.v[i] - v.low) / cell) * columns +
+           static_cast<std::size_t>((images.u[i] - u.low) / cell);
+  };
+  std::vector<float> nearest(columns * rows, std::numeric_limits<float>::infinity());
+  std::vector<std::size_t> looked_at;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (!u.holds(images.u[i]) || !v.holds(images.v[i])) continue;
+    looked_at.push_back(i);
+    float& range = nearest[cell_of(i)];
+    range = std::min(range, images.range[i]);
+  }
+  const auto hidden = std::ranges::count_if(
+      looked_at, [&](std::size_t i) { return images.range[i] > nearest[cell_of(i)] * (1.0f + kCellsDeep * cell); });
+  return looked_at.empty() ? 0.0 : static_cast<double>(hidden) / static_cast<double>(looked_at.size());
+}
+
+Vec3 most_open_viewpoint(std::span<const Vec3> points, const Vec3& behind) {
+  // Four degrees apart: into a full bin, tubes hide each other from a little aside.
+  constexpr std::size_t kDirections = 512;
+  const Vec3 middle = middle_of(points);
+  double squares = 0.0;
+  for (const Vec3& point : points) squares += (point - middle).squaredNorm();
+  const double spread = std::sqrt(squares / static_cast<double>(points.size()));
+  std::vector<Vec3> viewpoints;
+  for (const Vec3& direction : directions_around(kDirections))
+    if (behind.isZero() || direction.dot(behind) < 0.0)
+      for (const double distance : {2.5, 4.0, 8.0})  // of whole cells, bins, and parts of them
+        viewpoints.push_back(middle + distance * spread * direction);
+  const std::vector<double> hidden = gather_in_parallel(
+      viewpoints.size(), [&](std::size_t k) { return std::vector{hidden_share(points, viewpoints[k])}; });
+  return viewpoints[static_cast<std::size_t>(std::ranges::min_element(hidden) - hidden.begin())];
+}
+
+}  // namespace tubebin::modeling

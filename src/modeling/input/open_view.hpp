@@ -1,0 +1,18 @@
+/// How much of a cloud can be seen from a place, and from where all of it can.
+#pragma once
+
+#include <span>
+
+#include "tubebin/core/geometry.hpp"
+
+namespace tubebin::modeling {
+
+/// The share of the points that lie far behind others as seen from `viewpoint`: next to none of what a scanner saw
+/// from there.
+double hidden_share(std::span<const Vec3> points, const Vec3& viewpoint);
+
+/// The place from which the fewest of the points lie behind others, of places around them, up to eight times as far away as they spread.
+/// Not `behind` the points: in the half of space that this direction from their middle points to; zero: anywhere.
+Vec3 most_open_viewpoint(std::span<const Vec3> points, const Vec3& behind);
+
+}  // namespace tubebin::modeling

@@ -1,0 +1,61 @@
+#include "modeling/input/viewpoint_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "modeling/input/grid_viewpoint.hpp"
+#include "modeling/input/normals.hpp"
+#include "modeling/input/open_view.hpp"
+#include "modeling/input/point_sample.hpp"
+#include "modeling/input/radius_estimation.hpp"
+#include "tubebin/core/geometry.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// Few enough for a search that takes a moment.
+std::vector<Vec3> coarse_sample(const ModelingInput& input) { return sample_of(input.points, 8000); }
+
+}  // namespace
+
+ViewpointCheck check_viewpoint(ModelingInput& input) {
+  constexpr double kFarOff = 15.0;      // degrees, as the points see it
+  constexpr double kMostHidden = 0.15;  // of what scanners saw at most 0.08, where a scan is cropped
+  constexpr std::size_t kSample = 20000, kFewest = 100;
+  const std::vector<Vec3> sample = sample_of(input.points, kSample);
+  if (sample.size() < kFewest || !input.sources.empty()) return {};
+  const Vec3 told = input.world_from_sensor.translation();
+  if (const auto seen = input.width > 0 ? viewpoint_of_grid(input.points, input.width) : std::nullopt) {
+    const Vec3 middle = middle_of(sample);
+    const double cosine = (told - middle).normalized().dot((*seen - middle).normalized());
+    if (std::acos(std::clamp(cosine, -1.0, 1.0)) < radians(kFarOff)) return {};
+    input.world_from_sensor.translation() = *seen;
+    return {.doubt = "its rows and columns show another place"};
+  }
+  const double hidden = hidden_share(sample, told);
+  if (hidden <= kMostHidden) return {.doubt = {}, .is_certain = !told.isZero()};
+  input.world_from_sensor.translation() = most_open_viewpoint(coarse_sample(input), Vec3::Zero());
+  return {.doubt = fmt::format("{:.0f} % of its points lie far behind others from there", 100.0 * hidden),
+          .is_certain = false};
+}
+
+bool is_seen_from_behind(const FilteredCloud& cloud, const ViewProjection& projection) {
+  const auto normals =
+      estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, 0.0), 1, cloud.viewpoints);
+  const CurvedPlaces places = find_curved_places(cloud.points, normals, projection, cloud.spacing);
+  // By more than chance: of things with neither side, noise and corners make as many.
+  constexpr double kDeviations = 2.5;
+  const auto inward = static_cast<double>(places.hollow), outward = static_cast<double>(places.radii.size());
+  return inward - outward > kDeviations * std::sqrt(inward + outward);
+}
+
+void look_from_the_other_side(ModelingInput& input) {
+  const std::vector<Vec3> sample = coarse_sample(input);
+  auto viewpoint = input.world_from_sensor.translation();
+  viewpoint = most_open_viewpoint(sample, viewpoint - middle_of(sample));
+}
+
+}  // namespace tubebin::modeling
