@@ -20,7 +20,7 @@ TEST(HiddenShare, IsNothingOfOneSurface) {
   std::vector<Vec3> points;
   add_rectangle({-0.5, -0.5, 0.0}, {1, 0, 0}, {0, 1, 0}, 8000, points);
   for (const Vec3& viewpoint : {Vec3(0, 0, 2), Vec3(1.5, 0, 0.8), Vec3(0.3, 0.2, -1.0)})
-    EXPECT_EQ(hidden_share(points, viewpoint), 0.0);
+    EXPECT_EQ(hidden_share(points, viewpoint, 4.0), 0.0);
 }
 
 TEST(HiddenShare, IsThatOfTheSurfaceBehind) {
@@ -28,19 +28,19 @@ TEST(HiddenShare, IsThatOfTheSurfaceBehind) {
   add_rectangle({-0.5, -0.5, 0.0}, {1, 0, 0}, {0, 1, 0}, 15000, points);
   add_rectangle({-0.5, -0.5, -0.4}, {1, 0, 0}, {0, 1, 0}, 5000, points);
   // A cell of some four points, mostly three of the upper one: e^-3 of the cells hold none of it.
-  EXPECT_NEAR(hidden_share(points, {0, 0, 100}), 0.25 * (1.0 - std::exp(-3.0)), 0.02);
-  EXPECT_NEAR(hidden_share(points, {0, 0, -100}), 0.75 * (1.0 - std::exp(-1.0)), 0.02);
+  EXPECT_NEAR(hidden_share(points, {0, 0, 100}, 4.0), 0.25 * (1.0 - std::exp(-3.0)), 0.02);
+  EXPECT_NEAR(hidden_share(points, {0, 0, -100}, 4.0), 0.75 * (1.0 - std::exp(-1.0)), 0.02);
 }
 
 TEST(HiddenShare, TakesAnyViewpointAndAnyPoints) {
-  EXPECT_EQ(hidden_share({}, Vec3::Zero()), 0.0);
+  EXPECT_EQ(hidden_share({}, Vec3::Zero(), 4.0), 0.0);
   const std::vector<Vec3> one_place(1000, Vec3(0.1, 0.2, 0.3));
-  EXPECT_EQ(hidden_share(one_place, {0, 0, 1}), 0.0);
-  EXPECT_EQ(hidden_share(one_place, one_place.front()), 0.0);
+  EXPECT_EQ(hidden_share(one_place, {0, 0, 1}, 4.0), 0.0);
+  EXPECT_EQ(hidden_share(one_place, one_place.front(), 4.0), 0.0);
   std::vector<Vec3> around;
   Random random(5);
   for (int k = 0; k < 5000; ++k) around.emplace_back(random.normal(), random.normal(), random.normal());
-  EXPECT_GT(hidden_share(around, Vec3::Zero()), 0.2);
+  EXPECT_GT(hidden_share(around, Vec3::Zero(), 4.0), 0.2);
 }
 
 /// A box without a lid, and something in it.
@@ -60,7 +60,8 @@ TEST(MostOpenViewpoint, LooksIntoABoxWhicheverWayItOpens) {
     for (Vec3& point : points) point = turn * point + Vec3(3, -2, 1);
     const Vec3 viewpoint = most_open_viewpoint(points, -up);
     EXPECT_GT((viewpoint - Vec3(3, -2, 1)).normalized().dot(up.normalized()), 0.85);
-    EXPECT_LT(hidden_share(points, viewpoint), hidden_share(points, Vec3(3, -2, 1) + turn * Vec3(2.0, 0.4, 0.6)));
+    EXPECT_LT(hidden_share(points, viewpoint, 4.0),
+              hidden_share(points, Vec3(3, -2, 1) + turn * Vec3(2.0, 0.4, 0.6), 4.0));
   }
 }
 

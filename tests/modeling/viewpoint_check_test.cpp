@@ -62,7 +62,7 @@ void expect_all_found(const ModelingResult& found, const cloud::Cloud& cloud, st
 TEST(ViewpointCheck, FindsTheOpenSideOfACloudInAnyOrder) {
   const cloud::Cloud cloud = scan::scan(crossing_tubes()).cloud;
   const std::pair<Vec3, const char*> cases[] = {
-      {{0.0, 0.0, 0.02}, "look hollow"},             // among the tubes
+      {{0.0, 0.0, 0.02}, "lie all around"},          // among the tubes
       {{-0.7, 0.1, 0.0}, "lie far behind others"},   // beside the bin, at the height of its floor
       {{0.0, 0.05, -4.0}, "lie far behind others"},  // below it
   };

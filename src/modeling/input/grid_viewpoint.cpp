@@ -31,7 +31,7 @@ std::vector<Sample> sample_grid(std::span<const cloud::Point> points, std::uint3
   return samples;
 }
 
-Vec3 middle_of(const std::vector<Sample>& samples) {
+Vec3 centroid_of(const std::vector<Sample>& samples) {
   Vec3 sum = Vec3::Zero();
   for (const Sample& sample : samples) sum += sample.point;
   return sum / static_cast<double>(samples.size());
@@ -43,7 +43,7 @@ std::optional<Vec3> viewpoint_of(const std::vector<Sample>& samples, std::uint32
   constexpr std::size_t kFewest = 100;
   constexpr double kWorstPixels = 2.0;
   if (samples.size() < kFewest) return std::nullopt;
-  const Vec3 middle = middle_of(samples);
+  const Vec3 middle = centroid_of(samples);
   double spread = 0.0;
   for (const Sample& sample : samples) spread += (sample.point - middle).norm();
   spread /= static_cast<double>(samples.size());

@@ -41,20 +41,24 @@ std::vector<Vec3> directions_around(std::size_t count) {
   return directions;
 }
 
-}  // namespace
-
-double hidden_share(std::span<const Vec3> points, const Vec3& viewpoint) {
-  // Cells of some four points; what is deeper behind the nearest than four cells are wide is no surface that leans.
-  constexpr float kPointsOfCell = 4.0f, kCellsDeep = 4.0f;
-  if (points.empty()) return 0.0;
-  const auto count = static_cast<float>(points.size());
+ViewProjection::Images images_from(const Vec3& viewpoint, std::span<const Vec3> points) {
   const ViewProjection projection(Pose(Eigen::Translation3d(viewpoint)), middle_of(points).cast<float>());
   ViewProjection::Images images;
   for (const Vec3& point : points) {
     const ViewProjection::Image image = projection(point.cast<float>());
     images.u.push_back(image.u), images.v.push_back(image.v), images.range.push_back(image.range);
   }
+  return images;
+}
+
+}  // namespace
+
+double hidden_share(std::span<const Vec3> points, const Vec3& viewpoint, double widths) {
+  constexpr float kPointsOfCell = 4.0f;
+  if (points.empty()) return 0.0;
+  const ViewProjection::Images images = images_from(viewpoint, points);
   const Span u(images.u), v(images.v);
+  const auto count = static_cast<float>(points.size());
   const float cell = std::max({std::sqrt(kPointsOfCell * u.length() * v.length() / count), u.length() / count,
                                v.length() / count, std::numeric_limits<float>::min()});
   const auto columns = static_cast<std::size_t>(u.length() / cell) + 1;
@@ -71,14 +75,16 @@ double hidden_share(std::span<const Vec3> points, const Vec3& viewpoint) {
     float& range = nearest[cell_of(i)];
     range = std::min(range, images.range[i]);
   }
-  const auto hidden = std::ranges::count_if(
-      looked_at, [&](std::size_t i) { return images.range[i] > nearest[cell_of(i)] * (1.0f + kCellsDeep * cell); });
+  const float farthest = 1.0f + static_cast<float>(widths) * cell;  // in ranges of the nearest point
+  const auto hidden =
+      std::ranges::count_if(looked_at, [&](std::size_t i) { return images.range[i] > farthest * nearest[cell_of(i)]; });
   return looked_at.empty() ? 0.0 : static_cast<double>(hidden) / static_cast<double>(looked_at.size());
 }
 
 Vec3 most_open_viewpoint(std::span<const Vec3> points, const Vec3& behind) {
   // Four degrees apart: into a full bin, tubes hide each other from a little aside.
   constexpr std::size_t kDirections = 512;
+  constexpr double kWidths = 4.0;  // a surface that leans is not as deep
   const Vec3 middle = middle_of(points);
   double squares = 0.0;
   for (const Vec3& point : points) squares += (point - middle).squaredNorm();
@@ -89,7 +95,7 @@ Vec3 most_open_viewpoint(std::span<const Vec3> points, const Vec3& behind) {
       for (const double distance : {2.5, 4.0, 8.0})  // of whole cells, bins, and parts of them
         viewpoints.push_back(middle + distance * spread * direction);
   const std::vector<double> hidden = gather_in_parallel(
-      viewpoints.size(), [&](std::size_t k) { return std::vector{hidden_share(points, viewpoints[k])}; });
+      viewpoints.size(), [&](std::size_t k) { return std::vector{hidden_share(points, viewpoints[k], kWidths)}; });
   return viewpoints[static_cast<std::size_t>(std::ranges::min_element(hidden) - hidden.begin())];
 }
 

@@ -7,9 +7,9 @@
 
 namespace tubebin::modeling {
 
-/// The share of the points that lie far behind others as seen from `viewpoint`: next to none of what a scanner saw
-/// from there.
-double hidden_share(std::span<const Vec3> points, const Vec3& viewpoint);
+/// The share of the points that lie behind others as seen from `viewpoint`, by more than so many widths of a cell that holds some
+/// four points.
+double hidden_share(std::span<const Vec3> points, const Vec3& viewpoint, double widths);
 
 /// The place from which the fewest of the points lie behind others, of places around them, up to eight times as far away as they spread.
 /// Not `behind` the points: in the half of space that this direction from their middle points to; zero: anywhere.

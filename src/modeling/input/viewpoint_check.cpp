@@ -16,14 +16,23 @@
 namespace tubebin::modeling {
 namespace {
 
+/// Whether points lie all around: a scanner's view is narrower than a right angle about its axis, and of directions all around the
+/// mean is next to nothing.
+bool is_amid(const std::vector<Vec3>& points, const Vec3& place) {
+  Vec3 directions = Vec3::Zero();
+  for (const Vec3& point : points) directions += (point - place).normalized();
+  return directions.norm() < 0.5 * static_cast<double>(points.size());
+}
+
 /// Few enough for a search that takes a moment.
 std::vector<Vec3> coarse_sample(const ModelingInput& input) { return sample_of(input.points, 8000); }
 
 }  // namespace
 
 ViewpointCheck check_viewpoint(ModelingInput& input) {
-  constexpr double kFarOff = 15.0;      // degrees, as the points see it
-  constexpr double kMostHidden = 0.15;  // of what scanners saw at most 0.08, where a scan is cropped
+  constexpr double kFarOff = 15.0;  // degrees, as the points see it
+  // Of what scanners saw, a tenth at most lies as far behind something, in full bins.
+  constexpr double kMostHidden = 0.12, kWidths = 8.0;
   constexpr std::size_t kSample = 20000, kFewest = 100;
   const std::vector<Vec3> sample = sample_of(input.points, kSample);
   if (sample.size() < kFewest || !input.sources.empty()) return {};
@@ -35,10 +44,12 @@ ViewpointCheck check_viewpoint(ModelingInput& input) {
     input.world_from_sensor.translation() = *seen;
     return {.doubt = "its rows and columns show another place"};
   }
-  const double hidden = hidden_share(sample, told);
-  if (hidden <= kMostHidden) return {.doubt = {}, .is_certain = !told.isZero()};
+  const double hidden = hidden_share(sample, told, kWidths);
+  const bool is_within = is_amid(sample, told);
+  if (!is_within && hidden <= kMostHidden) return {.doubt = {}, .is_certain = !told.isZero()};
   input.world_from_sensor.translation() = most_open_viewpoint(coarse_sample(input), Vec3::Zero());
-  return {.doubt = fmt::format("{:.0f} % of its points lie far behind others from there", 100.0 * hidden),
+  return {.doubt = is_within ? "its points lie all around"
+                             : fmt::format("{:.0f} % of its points lie far behind others from there", 100.0 * hidden),
           .is_certain = false};
 }
 
