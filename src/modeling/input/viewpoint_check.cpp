@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "modeling/input/grid_viewpoint.hpp"
-#include "modeling/input/normals.hpp"
 #include "modeling/input/open_view.hpp"
 #include "modeling/input/point_sample.hpp"
 #include "modeling/input/radius_estimation.hpp"
@@ -46,7 +45,7 @@ ViewpointCheck check_viewpoint(ModelingInput& input) {
   }
   const double hidden = hidden_share(sample, told, kWidths);
   const bool is_within = is_amid(sample, told);
-  if (!is_within && hidden <= kMostHidden) return {.doubt = {}, .is_certain = !told.isZero()};
+  if (!is_within && hidden <= kMostHidden) return {.doubt = {}, .is_certain = false};
   input.world_from_sensor.translation() = most_open_viewpoint(coarse_sample(input), Vec3::Zero());
   return {.doubt = is_within ? "its points lie all around"
                              : fmt::format("{:.0f} % of its points lie far behind others from there", 100.0 * hidden),
@@ -54,9 +53,7 @@ ViewpointCheck check_viewpoint(ModelingInput& input) {
 }
 
 bool is_seen_from_behind(const FilteredCloud& cloud, const ViewProjection& projection) {
-  const auto normals =
-      estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, 0.0), 1, cloud.viewpoints);
-  const CurvedPlaces places = find_curved_places(cloud.points, normals, projection, cloud.spacing);
+  const CurvedPlaces places = find_curved_places(cloud.points, cloud.normals, projection, cloud.spacing);
   // By more than chance: of things with neither side, noise and corners make as many.
   constexpr double kDeviations = 2.5;
   const auto inward = static_cast<double>(places.hollow), outward = static_cast<double>(places.radii.size());

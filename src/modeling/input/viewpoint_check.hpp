@@ -10,7 +10,7 @@ namespace tubebin::modeling {
 
 struct ViewpointCheck {
   std::string doubt;       ///< why the told one is wrong; empty: it is not
-  bool is_certain = true;  ///< told by the file or the rows and columns, and not impossible
+  bool is_certain = true;  ///< the rows and columns show it, or there is one for each source
 };
 
 /// Moves the input's viewpoint to where the grid of an organized cloud shows it, if it is told elsewhere, and that of any other
@@ -18,7 +18,7 @@ struct ViewpointCheck {
 /// looked at.
 ViewpointCheck check_viewpoint(ModelingInput& input);
 
-/// Whether the surface clearly curves inward more often than outward: that of tubes is seen from outside.
+/// Whether the surface clearly curves inward more often than outward: that of tubes is seen from outside. `cloud` has normals.
 bool is_seen_from_behind(const FilteredCloud& cloud, const ViewProjection& projection);
 
 /// Moves the viewpoint to the other side of the cloud.
