@@ -58,10 +58,6 @@ def points_of(image):
     return points / image['unit'], viewpoint / image['unit']
 
 
-def write_pcd(image, path):
-    write_organized(*points_of(image), path)
-
-
 def write_organized(points, viewpoint, path):
     height, width = points.shape[:2]
     out = np.zeros(height * width, [('x', '<f4'), ('y', '<f4'), ('z', '<f4')])

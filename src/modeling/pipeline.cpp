@@ -237,7 +237,8 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
     look_from_the_other_side(input);
     scene = filter_from_viewpoint(input, options);
   }
-  if (!viewpoint.doubt.empty())
+  scene.found.viewpoint_is_told = viewpoint.doubt.empty();
+  if (!scene.found.viewpoint_is_told)
     scene.found.doubts.insert(
         scene.found.doubts.begin(),
         fmt::format("the cloud was not seen from {}, as VIEWPOINT or --viewpoint has it: {}; {} is taken instead",

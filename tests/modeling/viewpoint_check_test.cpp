@@ -31,6 +31,8 @@ TEST(ViewpointCheck, TakesWhatTheGridShows) {
   ASSERT_EQ(found.found.doubts.size(), 1u);
   EXPECT_THAT(found.found.doubts.front(), HasSubstr("not seen from (0.000, 0.000, 0.000)"));
   EXPECT_LT((found.found.viewpoint - cloud.world_from_sensor.translation()).norm(), 0.01);
+  EXPECT_TRUE(told.found.viewpoint_is_told);
+  EXPECT_FALSE(found.found.viewpoint_is_told);
   EXPECT_EQ(found.tubes.size(), told.tubes.size());
   EXPECT_NEAR(micro_recall_of(found, cloud), micro_recall_of(told, cloud), 0.001);
 }
@@ -71,6 +73,7 @@ TEST(ViewpointCheck, FindsTheOpenSideOfACloudInAnyOrder) {
     ASSERT_FALSE(found.found.doubts.empty());
     EXPECT_THAT(found.found.doubts.front(), HasSubstr("not seen from (0.000, 0.000, 0.000)"));
     EXPECT_THAT(found.found.doubts.front(), HasSubstr(why));
+    EXPECT_FALSE(found.found.viewpoint_is_told);
     EXPECT_GT(found.found.up.z(), 0.99);
     expect_all_found(found, cloud, 2);
   }
@@ -96,6 +99,7 @@ TEST(ViewpointCheck, LeavesAPossibleOneAlone) {
   EXPECT_EQ(check.doubt, "");
   EXPECT_EQ(input.world_from_sensor.translation(), cloud.world_from_sensor.translation());
   const ModelingResult told = model_tubes(input, {});
+  EXPECT_TRUE(told.found.viewpoint_is_told);
   EXPECT_EQ(told.found.viewpoint, cloud.world_from_sensor.translation());
   expect_all_found(told, cloud, 2);
   // In the scanner's own frame a file that says nothing is right.

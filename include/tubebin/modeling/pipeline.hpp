@@ -72,7 +72,7 @@ struct SceneFound {
   bool up_is_known = false;                   ///< told, by a bin as well, or a support was found
   Vec3 viewpoint = Vec3::Zero();              ///< metres, of source 0
   std::vector<Vec3> further_viewpoints = {};  ///< of the other sources
-  bool viewpoint_is_told = true;              ///< else found from the grid of an organized cloud
+  bool viewpoint_is_told = true;              ///< else found from the cloud
   std::size_t flat_regions = 0;               ///< set aside as floor, walls and other obstacles
   std::optional<BinFound> bin;                ///< where the cloud shows one; nothing else rests on it
   double unexplained = 0.0;                   ///< part of the filtered points that no tube explains
