@@ -25,6 +25,16 @@ inline scene::Scene scene_of(std::vector<scene::PlacedTube> tubes) {
   return scene;
 }
 
+/// At the middle of the bin's floor.
+inline scene::Scanner looking_from(const Vec3& position) {
+  scene::Scanner scanner;
+  scanner.position = position;
+  scanner.rotation_deg = scene::rotation_deg_towards(Vec3::Zero(), position);
+  scanner.width = 960, scanner.height = 600;
+  scanner.horizontal_fov_deg = 45.0;
+  return scanner;
+}
+
 /// Moves every point along its ray by normal noise of `sigma` metres.
 inline void add_range_noise(cloud::Cloud& cloud, double sigma, std::uint64_t seed) {
   Random random(seed);

@@ -12,15 +12,6 @@
 namespace tubebin::modeling {
 namespace {
 
-scene::Scanner looking_from(const Vec3& position) {
-  scene::Scanner scanner;
-  scanner.position = position;
-  scanner.rotation_deg = scene::rotation_deg_towards(Vec3::Zero(), position);
-  scanner.width = 960, scanner.height = 600;
-  scanner.horizontal_fov_deg = 45.0;
-  return scanner;
-}
-
 /// Three layers of tubes across the line from one scanner to the other: each scanner sees other sides of them.
 scene::Scene pile_between_scanners() {
   scene::Scene scene = scene_of({});

@@ -422,6 +422,16 @@ TEST(Pipeline, AnEmptyBinHasNoTubes) {
     }
 }
 
+TEST(Pipeline, ABoxWithoutAPointIsRefusedAndOneOfFloorIsEmpty) {
+  const cloud::Cloud cloud = scan::scan(scene_of({})).cloud;
+  const ModelingInput input{.points = cloud.points, .world_from_sensor = cloud.world_from_sensor, .bin = {}};
+  ModelingOptions options;
+  options.crop_min = Vec3(-0.1, -0.1, -0.01), options.crop_max = Vec3(0.1, 0.1, 0.1);
+  EXPECT_TRUE(model_tubes(input, options).tubes.empty());
+  options.crop_min = Vec3(5, 5, 5), options.crop_max = Vec3(6, 6, 6);
+  EXPECT_THROW(model_tubes(input, options), IoError);
+}
+
 TEST(Pipeline, ACloudWithoutAPointInTheBinIsRefused) {
   const std::vector<cloud::Point> points = {cloud::Point(5, 5, 0.1f), cloud::Point(6, 5, 0.1f)};
   const ModelingInput input{.points = points, .world_from_sensor = Pose::Identity(), .bin = scene::Bin{}};

@@ -110,12 +110,8 @@ TEST(ViewpointCheck, LeavesAPossibleOneAlone) {
 
 TEST(ViewpointCheck, TakesScansFromSeveralPlacesAsOneCloud) {
   scene::Scene scene = crossing_tubes();
-  for (const Vec3& position : {Vec3(-1.2, 0.0, 1.0), Vec3(1.2, 0.3, 1.0), Vec3(0.0, -1.2, 1.0)}) {
-    scene::Scanner scanner = scene.scanner;
-    scanner.position = position;
-    scanner.rotation_deg = scene::rotation_deg_towards(Vec3::Zero(), position);
-    scene.further_scanners.push_back(scanner);
-  }
+  for (const Vec3& position : {Vec3(-1.2, 0.0, 1.0), Vec3(1.2, 0.3, 1.0), Vec3(0.0, -1.2, 1.0)})
+    scene.further_scanners.push_back(looking_from(position));
   const cloud::Cloud cloud = scan::scan_from_all(scene).cloud;
   const ModelingResult found = model_without_viewpoint(cloud, Vec3::Zero());
   ASSERT_FALSE(found.found.doubts.empty());

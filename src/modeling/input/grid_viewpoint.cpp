@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "modeling/input/point_sample.hpp"
+
 namespace tubebin::modeling {
 namespace {
 
@@ -31,19 +33,13 @@ std::vector<Sample> sample_grid(std::span<const cloud::Point> points, std::uint3
   return samples;
 }
 
-Vec3 centroid_of(const std::vector<Sample>& samples) {
-  Vec3 sum = Vec3::Zero();
-  for (const Sample& sample : samples) sum += sample.point;
-  return sum / static_cast<double>(samples.size());
-}
-
 // Direct linear transform (Hartley and Zisserman 2004, "Multiple View Geometry", 7.1): the camera matrix P with pixel ~ P
 // point is the direction in which the equations have the least squares; its null vector is where the camera stands.
 std::optional<Vec3> viewpoint_of(const std::vector<Sample>& samples, std::uint32_t width) {
   constexpr std::size_t kFewest = 100;
   constexpr double kWorstPixels = 2.0;
   if (samples.size() < kFewest) return std::nullopt;
-  const Vec3 middle = centroid_of(samples);
+  const Vec3 middle = middle_of(samples, &Sample::point);
   double spread = 0.0;
   for (const Sample& sample : samples) spread += (sample.point - middle).norm();
   spread /= static_cast<double>(samples.size());

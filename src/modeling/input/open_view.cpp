@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
+#include "core/golden_spiral.hpp"
 #include "modeling/input/point_sample.hpp"
 #include "modeling/parallel.hpp"
 #include "tubebin/modeling/scan_view.hpp"
@@ -28,18 +28,6 @@ struct Span {
   float length() const { return high - low; }
   bool holds(float coordinate) const { return coordinate >= low && coordinate <= high; }
 };
-
-/// Unit directions, spread evenly over the sphere along a golden spiral.
-std::vector<Vec3> directions_around(std::size_t count) {
-  const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  std::vector<Vec3> directions;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double z = 1.0 - (2.0 * static_cast<double>(k) + 1.0) / static_cast<double>(count);
-    const double across = std::sqrt(1.0 - z * z), angle = golden_angle * static_cast<double>(k);
-    directions.emplace_back(across * std::cos(angle), across * std::sin(angle), z);
-  }
-  return directions;
-}
 
 ViewProjection::Images images_from(const Vec3& viewpoint, std::span<const Vec3> points) {
   const ViewProjection projection(Pose(Eigen::Translation3d(viewpoint)), middle_of(points).cast<float>());
@@ -90,7 +78,7 @@ Vec3 most_open_viewpoint(std::span<const Vec3> points, const Vec3& behind) {
   for (const Vec3& point : points) squares += (point - middle).squaredNorm();
   const double spread = std::sqrt(squares / static_cast<double>(points.size()));
   std::vector<Vec3> viewpoints;
-  for (const Vec3& direction : directions_around(kDirections))
+  for (const Vec3& direction : golden_spiral(kDirections, -1.0))
     if (behind.isZero() || direction.dot(behind) < 0.0)
       for (const double distance : {2.5, 4.0, 8.0})  // of whole cells, bins, and parts of them
         viewpoints.push_back(middle + distance * spread * direction);

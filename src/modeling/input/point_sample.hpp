@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,10 +16,12 @@ inline std::vector<Vec3> sample_of(std::span<const cloud::Point> points, std::si
   return sample;
 }
 
-inline Vec3 middle_of(std::span<const Vec3> points) {
+/// The mean of the places that `place` takes from each.
+template <typename Samples, typename Place = std::identity>
+Vec3 middle_of(const Samples& samples, const Place& place = {}) {
   Vec3 sum = Vec3::Zero();
-  for (const Vec3& point : points) sum += point;
-  return sum / static_cast<double>(points.size());
+  for (const auto& sample : samples) sum += std::invoke(place, sample);
+  return sum / static_cast<double>(samples.size());
 }
 
 }  // namespace tubebin::modeling

@@ -1,7 +1,8 @@
 #include "render/opengl/dome_light.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "core/golden_spiral.hpp"
 
 namespace tubebin::render {
 namespace {
@@ -9,16 +10,9 @@ namespace {
 constexpr int kLights = 32;
 constexpr int kMapPixels = 192;
 
-/// Over the upper half of the sphere, evenly, along a golden spiral.
 std::vector<Eigen::Vector3f> sky_directions() {
   std::vector<Eigen::Vector3f> directions;
-  const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  for (int i = 0; i < kLights; ++i) {
-    const double up = 1.0 - (i + 0.5) / kLights;
-    const double across = std::sqrt(1.0 - up * up);
-    directions.push_back(
-        Vec3(across * std::cos(golden_angle * i), across * std::sin(golden_angle * i), up).cast<float>());
-  }
+  for (const Vec3& direction : golden_spiral(kLights, 0.0)) directions.push_back(direction.cast<float>());
   return directions;
 }
 

@@ -1,0 +1,26 @@
+/// Step 1 of the pipeline: what of a scan may be tubes, before what, and from where it was seen.
+#pragma once
+
+#include <vector>
+
+#include "modeling/input/background.hpp"
+#include "tubebin/modeling/filtering.hpp"
+#include "tubebin/modeling/pipeline.hpp"
+
+namespace tubebin::modeling {
+
+/// A scene after step 1.
+struct FilteredScene {
+  std::vector<cloud::Point> measured;  ///< that `input` views; none: it views the points that were told
+  ModelingInput input;                 ///< with viewpoint and bin as the cloud shows them
+  SceneFound found;                    ///< but for what labels tell
+  ViewProjection projection;
+  Background background;
+  FilteredCloud cloud;
+};
+
+/// From where the scanner stood, as far as that is known. Throws IoError where a told bin or the box to crop to holds no point.
+/// The cloud has the normals that the search for radii begins with, or none.
+FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& options);
+
+}  // namespace tubebin::modeling
