@@ -166,8 +166,7 @@ std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, c
       link->other = other;
       links.push_back(*link);
     }
-  const JoinLimits limits{
-      .cost = cost_limit, .length = std::numeric_limits<double>::infinity(), .joins_per_end = kJoinsPerEnd};
+  const JoinLimits limits{.cost = cost_limit, .joins_per_end = kJoinsPerEnd};
   for (const JoinCandidate& join :
        find_join_candidates(paths, ends, find_possible_joins(paths, ends, occlusion, around.bending_rate, limits.cost),
                             occlusion, around.bending_rate, limits))

@@ -70,6 +70,7 @@ double shape_cost(const PieceEnd& a, const PieceEnd& b, double bending_rate, dou
 
 /// A pair whose cost has what was looked into so far.
 struct Examined : PossibleJoin {
+  double limit = 0.0;  ///< nats, of the cost
   enum class Step : std::uint8_t { shape, occlusion, room } last = Step::shape;
 };
 
@@ -225,7 +226,8 @@ std::vector<PossibleJoin> find_possible_joins(const std::vector<TubePiece>& piec
       cost += free_ends_cost(ends[a], ends[b], occlusion, radius);
       if (!(cost < cost_limit)) continue;
       const double gap = (ends[b].position - ends[a].position).norm();
-      pairs.push_back({.end_a = a, .end_b = b, .cost = cost, .length = lengths[a / 2] + lengths[b / 2] + gap});
+      pairs.push_back(
+          {.end_a = a, .end_b = b, .cost = cost, .gap = gap, .length = lengths[a / 2] + lengths[b / 2] + gap});
     }
   return pairs;
 }
@@ -282,9 +284,12 @@ std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pi
   const double radius = pieces.front().radius;
   const std::vector<Obstacle> obstacles = obstacles_of(pieces);
   RoomTest room(obstacles, bending_rate, radius);
+  const double longest = limits.lengths.longest();
   std::vector<Examined> examined;
-  for (const PossibleJoin& pair : pairs)
-    if (pair.cost < limits.cost && !(pair.length > limits.length)) examined.push_back({pair});
+  for (const PossibleJoin& pair : pairs) {
+    const double limit = limits.cost + limits.lengths.gain(pair.length, pair.gap, 0.0);
+    if (pair.cost < limit && !(pair.length > longest)) examined.push_back({pair, limit});
+  }
   std::vector<std::vector<Vec3>> bridges(examined.size());  // built when they are first asked for
   // Best first: a pair's cost only grows as it is looked into, so most pairs need no look at all.
   using Entry = std::pair<double, std::uint32_t>;  // cost so far, place in `examined`
@@ -301,7 +306,7 @@ std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pi
     std::vector<Vec3>& bridge = bridges[k];
     if (bridge.empty()) bridge = bridge_between(ends[a], ends[b], radius);
     if (pair.last != Examined::Step::room) {
-      const double limit = limits.cost - pair.cost;
+      const double limit = pair.limit - pair.cost;
       if (pair.last == Examined::Step::shape) {
         pair.cost += empty_cost(bridge, occlusion, radius, limit);
         pair.last = Examined::Step::occlusion;
@@ -309,7 +314,7 @@ std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pi
         pair.cost += room.cost(bridge, pair, limit);
         pair.last = Examined::Step::room;
       }
-      if (pair.cost < limits.cost) queue.emplace(pair.cost, k);
+      if (pair.cost < pair.limit) queue.emplace(pair.cost, k);
       continue;
     }
     ++joins_of_end[a], ++joins_of_end[b];

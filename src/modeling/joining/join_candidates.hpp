@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "modeling/joining/length_model.hpp"
 #include "modeling/joining/occlusion.hpp"
 #include "tubebin/modeling/tube_model.hpp"
 
@@ -26,7 +27,8 @@ struct PieceEnd {
 struct PossibleJoin {
   std::uint32_t end_a = 0, end_b = 0;  ///< end_a < end_b, of different pieces
   double cost = 0.0;                   ///< nats: -log of how much likelier it is that they do
-  double length = 0.0;                 ///< metres, of the two pieces and the gap between the ends, straight
+  double gap = 0.0;                    ///< metres, straight from end to end
+  double length = 0.0;                 ///< metres, of the two pieces and the gap
 };
 
 /// Two ends joined by a bridge that the scanner could not see.
@@ -49,13 +51,13 @@ std::vector<PossibleJoin> find_possible_joins(const std::vector<TubePiece>& piec
                                               const OcclusionTest& occlusion, double bending_rate, double cost_limit);
 
 struct JoinLimits {
-  double cost = 0.0;    ///< nats, of a join
-  double length = 0.0;  ///< metres, of two pieces and their bridge together
+  double cost = 0.0;      ///< nats, of a join that no common length speaks for
+  LengthModel lengths{};  ///< of two pieces and their bridge together
   std::size_t joins_per_end = 0;
 };
 
 /// The pairs whose join the scan does not rule out, cheapest first: of each end its `joins_per_end` cheapest,
-/// and those that are among the other end's.
+/// and those that are among the other end's. Where a join makes a tube whole, the common length speaks for it.
 std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
                                                 const std::vector<PossibleJoin>& pairs, const OcclusionTest& occlusion,
                                                 double bending_rate, const JoinLimits& limits);

@@ -17,6 +17,8 @@ namespace {
 
 /// A join is ruled out where the scan is e^7 times likelier without it.
 constexpr double kJoinCostLimit = 7.0;
+/// Beside what a common length says for it: some e^6 of tubes a hundred radii long or two.
+constexpr double kMostLengthGain = 6.0;
 /// And clear where it is e^2 times likelier with it.
 constexpr double kClearJoinCost = -2.0;
 /// The right join is among an end's cheapest few, or it could not be told from chance anyhow.
@@ -39,7 +41,7 @@ class JoinSearch {
         tubes_branch_(show_branches(pieces, ends_)) {
     if (!tubes_branch_)
       for (PieceEnd& end : ends_) end.is_on_side = false;
-    pairs_ = find_possible_joins(pieces, ends_, occlusion, bending_rate_, kJoinCostLimit);
+    pairs_ = find_possible_joins(pieces, ends_, occlusion, bending_rate_, kJoinCostLimit + kMostLengthGain);
   }
 
   const std::vector<PieceEnd>& ends() const { return ends_; }
@@ -47,9 +49,8 @@ class JoinSearch {
 
   PieceGraph graph(const LengthModel& lengths) const {
     return {pieces_, ends_,
-            find_join_candidates(
-                pieces_, ends_, pairs_, occlusion_, bending_rate_,
-                {.cost = cost_limit(lengths), .length = lengths.longest(), .joins_per_end = kJoinsPerEnd})};
+            find_join_candidates(pieces_, ends_, pairs_, occlusion_, bending_rate_,
+                                 {.cost = cost_limit(lengths), .lengths = lengths, .joins_per_end = kJoinsPerEnd})};
   }
 
  private:
