@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "modeling/lid_scene.hpp"
 
@@ -69,9 +70,12 @@ TEST_F(JoinCandidates, AbsorbTheFragmentsOnTheirWay) {
 TEST_F(JoinCandidates, MayCostMoreWhereTheyMakeATubeWhole) {
   const auto pieces = in_line(0.3);  // 0.5 m with the gap
   const double cost = candidates_of(pieces).at(0).cost;
+  constexpr double all = std::numeric_limits<double>::infinity();
   const auto count = [&](double limit, const std::vector<double>& common) {
     const LengthModel lengths{.radius = kRadius, .common = common, .longest_likely = 1.0};
-    return candidates_of(pieces, {.cost = limit, .lengths = lengths, .joins_per_end = 4}).size();
+    return candidates_of(
+               pieces, {.cost = limit, .lengths = lengths, .joins_per_end = 4, .chain_lengths = {all, 0.23, 0.23, all}})
+        .size();
   };
   EXPECT_EQ(count(cost - 3.0, {}), 0u);
   EXPECT_EQ(count(cost - 3.0, {0.5}), 1u);

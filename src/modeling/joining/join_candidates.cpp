@@ -202,6 +202,13 @@ double free_ends_cost(const PieceEnd& a, const PieceEnd& b, const OcclusionTest&
   return kEmptyCost * std::min(straight_on, along_bridge);
 }
 
+/// What a common length says for a join that makes one tube of two chains, nats.
+double length_gain(const PossibleJoin& join, const JoinLimits& limits) {
+  const std::vector<double>& chains = limits.chain_lengths;
+  if (chains.empty()) return 0.0;
+  return limits.lengths.gain(chains[join.end_a] + chains[join.end_b] + join.gap, join.gap, 0.0);
+}
+
 double bounding_volume(const std::vector<PieceEnd>& ends, double radius) {
   Eigen::AlignedBox3d box;
   for (const PieceEnd& end : ends) box.extend(end.position);
@@ -287,7 +294,7 @@ std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pi
   const double longest = limits.lengths.longest();
   std::vector<Examined> examined;
   for (const PossibleJoin& pair : pairs) {
-    const double limit = limits.cost + limits.lengths.gain(pair.length, pair.gap, 0.0);
+    const double limit = limits.cost + length_gain(pair, limits);
     if (pair.cost < limit && !(pair.length > longest)) examined.push_back({pair, limit});
   }
   std::vector<std::vector<Vec3>> bridges(examined.size());  // built when they are first asked for

@@ -53,7 +53,7 @@ double LengthModel::gain(double length, double bridged, double room) const {
 }
 
 double LengthModel::gain_beside(double one, double length, double bridged, double room) const {
-  const double any = std::isfinite(longest_likely) ? std::max(longest_likely, one) : one;
+  const double any = std::max(longest_likely, one);
   if (std::abs(length - one) <= 2.0 * sigma(bridged))
     return std::log(any / (std::sqrt(2.0 * std::numbers::pi) * sigma(bridged)));
   return length < one && one < length + room ? std::log(any / one) : 0.0;

@@ -19,7 +19,7 @@ struct LengthModel {
   double cost(double length, double bridged, double room, bool may_be_chance) const;
 
   /// nats, for a tube that has a common length, or may have it unseen, against one that all lengths up to
-  /// `longest_likely`, or, where that is not known, up to the common one, are as likely for.
+  /// `longest_likely` are as likely for.
   double gain(double length, double bridged, double room) const;
 
   /// nats, against common lengths that only the scan tells: each could be any, and is the best of those that are tried.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <optional>
 
 #include "modeling/joining/branch_links.hpp"
@@ -47,10 +48,14 @@ class JoinSearch {
   const std::vector<PieceEnd>& ends() const { return ends_; }
   bool tubes_branch() const { return tubes_branch_; }
 
-  PieceGraph graph(const LengthModel& lengths) const {
+  /// `chain_lengths`: as JoinLimits has them.
+  PieceGraph graph(const LengthModel& lengths, std::vector<double> chain_lengths = {}) const {
     return {pieces_, ends_,
             find_join_candidates(pieces_, ends_, pairs_, occlusion_, bending_rate_,
-                                 {.cost = cost_limit(lengths), .lengths = lengths, .joins_per_end = kJoinsPerEnd})};
+                                 {.cost = cost_limit(lengths),
+                                  .lengths = lengths,
+                                  .joins_per_end = kJoinsPerEnd,
+                                  .chain_lengths = std::move(chain_lengths)})};
   }
 
  private:
@@ -121,6 +126,13 @@ std::vector<double> seen_lengths(const Cover& cover) {
   return seen;
 }
 
+/// Of each end.
+std::vector<double> chain_lengths(const Cover& cover) {
+  std::vector<double> lengths(cover.graph.ends.size(), std::numeric_limits<double>::infinity());
+  for (const Chain& chain : cover.chains) lengths[chain.first_end] = lengths[chain.last_end] = chain.length;
+  return lengths;
+}
+
 /// No tube becomes much longer than those that likely joins make.
 Cover with_longest_length(const Cover& likely, const JoinSearch& search) {
   LengthModel lengths = likely.lengths;
@@ -135,7 +147,7 @@ Cover with_common_length(Cover best, const JoinSearch& search) {
   const std::vector<double> seen = seen_lengths(best), possible = lengths.possible_common(seen);
   if (possible.empty()) return best;
   lengths.common = possible;
-  const PieceGraph graph = search.graph(lengths);  // of the longest, and so of the others too
+  const PieceGraph graph = search.graph(lengths, chain_lengths(best));  // of the longest, and so of the others too
   std::vector<std::vector<double>> sets;
   for (const double length : possible) sets.push_back({length});
   if (const std::vector<double> recurring = lengths.recurring(seen); !recurring.empty()) sets.push_back(recurring);
