@@ -29,6 +29,7 @@ bool is_solid(const FlatRegion& region, std::span<const cloud::Point> points, do
 
 Background find_background(const ModelingInput& input, const ViewProjection& projection) {
   std::vector<std::uint32_t> finite;
+  finite.reserve(input.points.size());
   for (std::uint32_t i = 0; i < input.points.size(); ++i)
     if (cloud::is_finite(input.points[i])) finite.push_back(i);
   return find_background(input, projection, finite);

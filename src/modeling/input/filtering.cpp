@@ -108,8 +108,11 @@ FilteredCloud filter(const ModelingInput& input, const ViewProjection& projectio
 
   // In the order of the scanner's view, which the points' positions alone determine.
   std::vector<cloud::Point> points;
+  points.reserve(indices.size());
   for (const std::uint32_t i : indices) points.push_back(input.points[i]);
   FilteredCloud cloud;
+  cloud.source.reserve(indices.size());
+  cloud.points.reserve(indices.size());
   ViewProjection::Images images = projection.images(points);
   cloud.spacing =
       input.sources.empty() ? estimate_spacing(images).metres : spacing_of(views_of(input, projection, indices));
