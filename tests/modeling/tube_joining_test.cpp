@@ -49,6 +49,10 @@ TEST_F(TubeJoining, ALengthIsCommonWhereMostTubesHaveIt) {
   EXPECT_EQ(length_of({0.5, 0.5, 0.55, 0.6, 0.4, 0.35}), 0.0);  // two by chance
   // In a crowded pile, most of what is seen are parts.
   EXPECT_NEAR(length_of({0.5, 0.501, 0.502, 0.5, 0.499, 0.2, 0.24, 0.28, 0.33, 0.37, 0.41, 0.45}), 0.5, 0.002);
+  // And points in the air, which scanners make at edges, seem to be many short ones.
+  std::vector<double> lengths = {0.5, 0.501, 0.502, 0.5};
+  for (int i = 0; i < 30; ++i) lengths.push_back(0.015 + 0.0003 * i);
+  EXPECT_NEAR(length_of(lengths), 0.5, 0.002);
 }
 
 TEST_F(TubeJoining, AnEndThatIsDrawnOutPreventsNoClearJoin) {

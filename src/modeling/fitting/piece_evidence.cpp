@@ -157,7 +157,7 @@ bool is_tube(const PieceEvidence& evidence, double radius, double noise) {
 }
 
 bool is_doubtful(double length, double radius, double evidence) {
-  constexpr double kShort = 8.0, kEvidence = 100.0;  // radii; nats
+  constexpr double kEvidence = 100.0;  // nats
   return length < kShort * radius && evidence < kEvidence;
 }
 

@@ -28,6 +28,9 @@ bool has_other_radius(const PieceEvidence& evidence);
 /// as the points can tell, with points on its surface and no sides that the scanner saw through.
 bool is_tube(const PieceEvidence& evidence, double radius, double noise);
 
+/// In radii: necks and caps of bottles, edges, corners and points in the air may look like shorter tubes.
+constexpr double kShort = 8.0;
+
 /// Edges and corners of other things look like a short stretch of tube, too, but of a worse surface. Metres; nats.
 bool is_doubtful(double length, double radius, double evidence);
 

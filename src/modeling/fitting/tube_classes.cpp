@@ -26,9 +26,6 @@ constexpr std::size_t kMostClasses = 4, kMostTries = 8;
 /// So many pieces are joined in a second or two; a pile of a hundred tubes has some five hundred.
 constexpr std::size_t kMostPieces = 1500;
 
-/// In radii, the longest piece of a radius that is one of tubes: necks and caps of bottles and jars end before.
-constexpr double kLeastLength = 8.0;
-
 /// In nats, of a radius' long pieces, which then know it to 1 %. Edges and rims seem round here and there, and of no one
 /// radius. Less is believed where no radius has as much.
 constexpr double kEnoughEvidence = 5000.0;
@@ -239,7 +236,7 @@ class ClassFinder {
       piece.evidence = 0.5 * deviations * deviations;
       information += 1.0 / (evidence.curvature_error * evidence.curvature_error);
       const double off = std::abs(evidence.curvature - 1.0);
-      if (piece.length() >= kLeastLength * radius) {
+      if (piece.length() >= kShort * radius) {
         offs.push_back(off);
         if (!is_known(piece, off)) found.evidence += piece.evidence;
       }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "modeling/fitting/piece_evidence.hpp"
 #include "modeling/joining/branch_links.hpp"
 #include "modeling/joining/chains.hpp"
 #include "modeling/joining/common_shape.hpp"
@@ -103,17 +104,18 @@ double entropy(double yes, double all) {
 }
 
 /// What speaks against the cover, nats. How often a tube seems to have none of the common lengths, since the rest of it is
-/// lost or is another's, the cover itself tells: in a crowded pile that is every second one.
+/// lost or is another's, the cover itself tells: in a crowded pile that is every second one. What is short may be no tube, and
+/// tells nothing.
 double cost_of(const Cover& cover) {
   constexpr double kOff = 2.0;  // nats, two standard deviations of length
-  double cost = cover.lengths.cost_of_common_lengths(), off = 0.0;
+  double cost = cover.lengths.cost_of_common_lengths(), off = 0.0, on = 0.0;
   for (const Chain& chain : cover.chains) {
     cost += chain.path.cost - cover.lengths.gain(chain.length, chain.bridged, chain.room);
-    if (chain.length_cost <= kOff) continue;
-    cost -= chain.length_cost;
-    off += 1.0;
+    const bool is_off = chain.length_cost > kOff;
+    if (is_off) cost -= chain.length_cost;
+    if (!is_off || chain.length >= kShort * cover.lengths.radius) (is_off ? off : on) += 1.0;
   }
-  return cost + entropy(off, static_cast<double>(cover.chains.size()));
+  return cost + entropy(off, on + off);
 }
 
 /// The lengths of the tubes with both ends in sight. Bits of surface have no tube's length.
