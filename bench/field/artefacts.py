@@ -29,7 +29,13 @@ def ripples(depth, measured, focal, random):
     return depth + 0.2 * depth / focal * smooth_noise(depth.shape, 3, random), measured
 
 
-ARTEFACTS = {artefact.__name__: artefact for artefact in (missing, shadow, ripples)}
+def smeared(depth, measured, focal, random):
+    """Each pixel is a mean of what lies within half a pixel of it: points in the air along all edges."""
+    known = ndimage.gaussian_filter(measured.astype(float), 0.5)
+    return ndimage.gaussian_filter(np.where(measured, depth, 0.0), 0.5) / np.maximum(known, 1e-9), measured
+
+
+ARTEFACTS = {artefact.__name__: artefact for artefact in (missing, shadow, ripples, smeared)}
 
 
 def with_artefact(image, artefact, random):

@@ -74,7 +74,7 @@ TubeClasses find_classes(FilteredCloud& cloud, const ViewProjection& projection,
                            found.up_is_known ? found.up : Vec3::Zero(), radii);
 }
 
-/// Labels of the filtered points, and of those that a plane took from a tube.
+/// Labels of the filtered points, of those that lie alone, and of those that a plane took from a tube.
 void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& options, ModelingResult& result) {
   auto& [measured, input, found, projection, background, cloud] = scene;
   if (background.is_known && options.method == ModelingMethod::centerline)
@@ -84,10 +84,15 @@ void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& opti
   result.source = std::move(cloud.source);
   const auto unexplained = static_cast<double>(std::ranges::count(result.labels, cloud::Label{0}));
   result.found.unexplained = unexplained / std::max(static_cast<double>(result.labels.size()), 1.0);
+  std::vector<cloud::Point> points;
+  for (const std::uint32_t i : cloud.alone) points.push_back(input.points[i]);
+  const std::vector<cloud::Label> alone = label_further_points(points, result.tubes, background.noise);
+  result.source.insert(result.source.end(), cloud.alone.begin(), cloud.alone.end());
+  result.labels.insert(result.labels.end(), alone.begin(), alone.end());
   const bool adds = options.filtering.ratio >= 1.0 && !input.bin;
   if (!adds && !options.label_all) return;
 
-  std::vector<cloud::Point> points;
+  points.clear();
   points.reserve(background.set_aside.size());
   for (const std::uint32_t i : background.set_aside) points.push_back(input.points[i]);
   const auto set_aside = label_set_aside(points, result.tubes, std::max(background.noise, labels.noise / 2.0),

@@ -13,7 +13,7 @@ namespace tubebin::modeling {
 struct FilteringOptions {
   double ratio = 1.0;            ///< of the tube points that stay
   double bin_margin = 0.002;     ///< metres; points closer to floor or walls go
-  bool remove_outliers = false;  ///< drop lone points, as real scanners make at edges
+  bool remove_outliers = false;  ///< tubes are looked for without points that lie alone, as in the air along edges
 };
 
 void describe(Fields& fields, FilteringOptions& options);
@@ -26,6 +26,7 @@ struct FilteredCloud {
                                       ///< until they are estimated
   double spacing = 0.0;               ///< metres between neighbours: the root of the area that a point stands for
   std::vector<cloud::Point> viewpoints = {};  ///< of each point, metres; none: all the projection's
+  std::vector<std::uint32_t> alone = {};      ///< indices in the input, of points that lie alone and were left out
 };
 
 /// The filtered cloud, yet without normals: of the points at `indices`, all that may be the tubes', a random part stays.

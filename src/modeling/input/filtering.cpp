@@ -20,16 +20,38 @@ std::uint64_t position_key(const cloud::Point& point, std::uint64_t seed) {
   return derive_seed({seed, (std::uint64_t{x} << 32) | y, z});
 }
 
-/// Drops points that lie alone.
-std::vector<std::uint32_t> remove_outliers(const ModelingInput& input, const ViewProjection& projection,
-                                           const std::vector<std::uint32_t>& indices) {
-  std::vector<cloud::Point> selected;
-  for (const std::uint32_t i : indices) selected.push_back(input.points[i]);
-  const std::vector<bool> alone = lie_alone(projection, selected, spacing_of(views_of(input, projection, indices)));
-  std::vector<std::uint32_t> kept;
-  for (std::size_t k = 0; k < indices.size(); ++k)
-    if (!alone[k]) kept.push_back(indices[k]);
-  return kept;
+/// The points at `indices`, of which there are some, in the order of the scanner's view, which their positions alone
+/// determine.
+FilteredCloud in_view_order(const ModelingInput& input, const ViewProjection& projection,
+                            const std::vector<std::uint32_t>& indices) {
+  std::vector<cloud::Point> points;
+  points.reserve(indices.size());
+  for (const std::uint32_t i : indices) points.push_back(input.points[i]);
+  FilteredCloud cloud;
+  cloud.source.reserve(indices.size());
+  cloud.points.reserve(indices.size());
+  ViewProjection::Images images = projection.images(points);
+  cloud.spacing =
+      input.sources.empty() ? estimate_spacing(images).metres : spacing_of(views_of(input, projection, indices));
+  const double range = double(images.range.front());
+  const ViewGrid grid(std::move(images), points, static_cast<float>(std::max(2.0 * cloud.spacing / range, 1e-6)));
+  for (const std::uint32_t k : grid.order()) {
+    cloud.source.push_back(indices[k]);
+    cloud.points.push_back(points[k]);
+  }
+  cloud.viewpoints = viewpoints_of(input, cloud.source);
+  return cloud;
+}
+
+FilteredCloud without_lone_points(const ModelingInput& input, const ViewProjection& projection,
+                                  const FilteredCloud& cloud) {
+  const std::vector<bool> is_alone = lie_alone(projection, cloud.points, cloud.spacing);
+  std::vector<std::uint32_t> kept, alone;
+  for (std::size_t k = 0; k < cloud.source.size(); ++k) (is_alone[k] ? alone : kept).push_back(cloud.source[k]);
+  std::ranges::sort(kept);
+  FilteredCloud rest = kept.empty() ? FilteredCloud{} : in_view_order(input, projection, kept);
+  rest.alone = std::move(alone);
+  return rest;
 }
 
 }  // namespace
@@ -38,8 +60,10 @@ void describe(Fields& fields, FilteringOptions& options) {
   fields.number("ratio", options.ratio, {1e-6, 1.0}, "", "part of the tube points that stays, chosen at random");
   fields.number("bin_margin", options.bin_margin, {0.0, 1.0}, "m",
                 "points closer than this to the bin's floor or walls go; several times the scanner's noise");
-  fields.flag("remove_outliers", options.remove_outliers,
-              "drop points with few neighbours, as real scanners make at edges");
+  fields.flag(
+      "remove_outliers", options.remove_outliers,
+      "look for tubes without points that have few neighbours, as scans without a filter have them in the air along all edges; these are "
+      "labelled in the end");
 }
 
 std::vector<std::uint32_t> crop_bin(const ModelingInput& input, const FilteringOptions& options) {
@@ -102,28 +126,10 @@ ViewProjection view_of(const ModelingInput& input) {
 
 FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, std::vector<std::uint32_t> indices,
                      const FilteringOptions& options, std::uint64_t seed) {
-  if (options.remove_outliers) indices = remove_outliers(input, projection, indices);
   if (indices.empty()) return {};
-  indices = downsample(input.points, std::move(indices), options.ratio, seed);
-
-  // In the order of the scanner's view, which the points' positions alone determine.
-  std::vector<cloud::Point> points;
-  points.reserve(indices.size());
-  for (const std::uint32_t i : indices) points.push_back(input.points[i]);
-  FilteredCloud cloud;
-  cloud.source.reserve(indices.size());
-  cloud.points.reserve(indices.size());
-  ViewProjection::Images images = projection.images(points);
-  cloud.spacing =
-      input.sources.empty() ? estimate_spacing(images).metres : spacing_of(views_of(input, projection, indices));
-  const double range = double(images.range.front());
-  const ViewGrid grid(std::move(images), points, static_cast<float>(std::max(2.0 * cloud.spacing / range, 1e-6)));
-  for (const std::uint32_t k : grid.order()) {
-    cloud.source.push_back(indices[k]);
-    cloud.points.push_back(points[k]);
-  }
-  cloud.viewpoints = viewpoints_of(input, cloud.source);
-  return cloud;
+  FilteredCloud cloud =
+      in_view_order(input, projection, downsample(input.points, std::move(indices), options.ratio, seed));
+  return options.remove_outliers ? without_lone_points(input, projection, cloud) : cloud;
 }
 
 Vec3 viewpoint_of(const FilteredCloud& cloud, std::span<const std::uint32_t> indices, const ViewProjection& first) {

@@ -54,14 +54,12 @@ struct JoinLimits {
   double cost = 0.0;      ///< nats, of a join that no common length speaks for
   LengthModel lengths{};  ///< of two pieces and their bridge together
   std::size_t joins_per_end = 0;
-  std::vector<double>
-      chain_lengths{};  ///< of each end, metres, of the chain that it is an end of, infinite where of none;
-                        ///< empty: no chains are known
+  /// Of each end, metres, of the chain that it is an end of; infinite where of none. Empty: no chains are known.
+  std::vector<double> chain_lengths{};
 };
 
 /// The pairs whose join the scan does not rule out, cheapest first: of each end its `joins_per_end` cheapest,
-/// and those that are among the other end's. Where a join makes one tube of two chains, the common
-/// length speaks for it.
+/// and those that are among the other end's. Where a join makes one tube of two chains, the common length speaks for it.
 std::vector<JoinCandidate> find_join_candidates(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends,
                                                 const std::vector<PossibleJoin>& pairs, const OcclusionTest& occlusion,
                                                 double bending_rate, const JoinLimits& limits);
