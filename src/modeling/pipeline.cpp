@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "modeling/doubtful_tubes.hpp"
@@ -11,6 +12,7 @@
 #include "modeling/fitting/tube_classes.hpp"
 #include "modeling/input/filtered_scene.hpp"
 #include "modeling/input/normals.hpp"
+#include "modeling/input/point_sample.hpp"
 #include "modeling/joining/class_joining.hpp"
 #include "modeling/mixed_pixels.hpp"
 #include "modeling/point_labels.hpp"
@@ -74,6 +76,12 @@ TubeClasses find_classes(FilteredCloud& cloud, const ViewProjection& projection,
                            found.up_is_known ? found.up : Vec3::Zero(), radii);
 }
 
+/// Of points that the tubes were not looked for in.
+std::vector<cloud::Label> labels_of_further(const std::vector<std::uint32_t>& indices, const FilteredScene& scene,
+                                            const std::vector<TubeModel>& tubes) {
+  return label_further_points(points_at(scene.input.points, indices), tubes, scene.background.noise);
+}
+
 /// Labels of the filtered points, of those that lie alone, and of those that a plane took from a tube.
 void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& options, ModelingResult& result) {
   auto& [measured, input, found, projection, background, cloud] = scene;
@@ -84,20 +92,15 @@ void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& opti
   result.source = std::move(cloud.source);
   const auto unexplained = static_cast<double>(std::ranges::count(result.labels, cloud::Label{0}));
   result.found.unexplained = unexplained / std::max(static_cast<double>(result.labels.size()), 1.0);
-  std::vector<cloud::Point> points;
-  for (const std::uint32_t i : cloud.alone) points.push_back(input.points[i]);
-  const std::vector<cloud::Label> alone = label_further_points(points, result.tubes, background.noise);
-  result.source.insert(result.source.end(), cloud.alone.begin(), cloud.alone.end());
-  result.labels.insert(result.labels.end(), alone.begin(), alone.end());
+  std::ranges::copy(labels_of_further(cloud.alone, scene, result.tubes), std::back_inserter(result.labels));
+  std::ranges::copy(cloud.alone, std::back_inserter(result.source));
   const bool adds = options.filtering.ratio >= 1.0 && !input.bin;
   if (!adds && !options.label_all) return;
 
-  points.clear();
-  points.reserve(background.set_aside.size());
-  for (const std::uint32_t i : background.set_aside) points.push_back(input.points[i]);
-  const auto set_aside = label_set_aside(points, result.tubes, std::max(background.noise, labels.noise / 2.0),
-                                         projection, viewpoints_of(input, background.set_aside));
-  for (std::size_t k = 0; adds && k < points.size(); ++k) {
+  const auto set_aside = label_set_aside(points_at(input.points, background.set_aside), result.tubes,
+                                         std::max(background.noise, labels.noise / 2.0), projection,
+                                         viewpoints_of(input, background.set_aside));
+  for (std::size_t k = 0; adds && k < set_aside.size(); ++k) {
     if (set_aside[k] == 0) continue;
     result.source.push_back(background.set_aside[k]);
     result.labels.push_back(set_aside[k]);
@@ -105,10 +108,8 @@ void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& opti
   if (!options.label_all) return;
   result.all_labels.assign(input.points.size(), 0);
   if (options.filtering.ratio < 1.0) {
-    points.clear();
-    for (const std::uint32_t i : background.foreground) points.push_back(input.points[i]);
-    const auto labels = label_further_points(points, result.tubes, background.noise);
-    for (std::size_t k = 0; k < points.size(); ++k) result.all_labels[background.foreground[k]] = labels[k];
+    const auto further = labels_of_further(background.foreground, scene, result.tubes);
+    for (std::size_t k = 0; k < further.size(); ++k) result.all_labels[background.foreground[k]] = further[k];
   }
   for (std::size_t k = 0; k < set_aside.size(); ++k) result.all_labels[background.set_aside[k]] = set_aside[k];
   for (std::size_t k = 0; k < result.source.size(); ++k) result.all_labels[result.source[k]] = result.labels[k];

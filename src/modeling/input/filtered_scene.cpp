@@ -64,7 +64,7 @@ Background background_around_bin(const ModelingInput& input, const ViewProjectio
   Background background = is_alone ? find_background(input, projection, beside) : find_background(input, projection);
   std::vector<std::uint32_t> not_flat;
   std::ranges::set_intersection(beside, background.foreground, std::back_inserter(not_flat));
-  // What is over the walls leads over them.
+  // Tubes over the walls lead over them.
   const std::vector<std::uint32_t> over_walls = beside_bin(input, of_bin.foreground, -input.bin->wall_thickness);
   move_points(hanging_over(input.points, over_walls, not_flat, background.spacing), of_bin.set_aside,
               of_bin.foreground);
@@ -87,7 +87,7 @@ Background find_surroundings(ModelingInput& input, const ViewProjection& project
   return background_around_bin(input, projection, options);
 }
 
-/// What lies outside the box that tubes are looked for in counts as background.
+/// Makes background of all that lies outside the box that tubes are looked for in.
 void crop(Background& background, const ModelingInput& input, const ModelingOptions& options) {
   if (options.crop_min == options.crop_max) return;
   const Eigen::AlignedBox3d box(options.crop_min.cwiseMin(options.crop_max),

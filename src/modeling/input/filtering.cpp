@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "modeling/input/normals.hpp"
+#include "modeling/input/point_sample.hpp"
 #include "modeling/input/source_views.hpp"
 #include "modeling/input/view_grid.hpp"
 
@@ -24,9 +25,7 @@ std::uint64_t position_key(const cloud::Point& point, std::uint64_t seed) {
 /// determine.
 FilteredCloud in_view_order(const ModelingInput& input, const ViewProjection& projection,
                             const std::vector<std::uint32_t>& indices) {
-  std::vector<cloud::Point> points;
-  points.reserve(indices.size());
-  for (const std::uint32_t i : indices) points.push_back(input.points[i]);
+  const std::vector<cloud::Point> points = points_at(input.points, indices);
   FilteredCloud cloud;
   cloud.source.reserve(indices.size());
   cloud.points.reserve(indices.size());

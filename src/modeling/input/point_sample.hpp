@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -7,6 +8,15 @@
 #include "tubebin/cloud/cloud.hpp"
 
 namespace tubebin::modeling {
+
+/// The points at the indices, in their order.
+inline std::vector<cloud::Point> points_at(std::span<const cloud::Point> points,
+                                           std::span<const std::uint32_t> indices) {
+  std::vector<cloud::Point> selected;
+  selected.reserve(indices.size());
+  for (const std::uint32_t i : indices) selected.push_back(points[i]);
+  return selected;
+}
 
 /// Of at most about `size` points of a scan, spread evenly over it, those that are finite.
 inline std::vector<Vec3> sample_of(std::span<const cloud::Point> points, std::size_t size) {

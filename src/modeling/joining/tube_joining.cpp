@@ -19,7 +19,7 @@ namespace {
 
 /// A join is ruled out where the scan is e^7 times likelier without it.
 constexpr double kJoinCostLimit = 7.0;
-/// Beside what a common length says for it: some e^6 of tubes a hundred radii long or two.
+/// A common length L speaks for a join by log(1.6 L / r) at most (LengthModel::gain): of tubes 250 radii long.
 constexpr double kMostLengthGain = 6.0;
 /// And clear where it is e^2 times likelier with it.
 constexpr double kClearJoinCost = -2.0;
@@ -104,16 +104,19 @@ double entropy(double yes, double all) {
 }
 
 /// What speaks against the cover, nats. How often a tube seems to have none of the common lengths, since the rest of it is
-/// lost or is another's, the cover itself tells: in a crowded pile that is every second one. What is short may be no tube, and
-/// tells nothing.
+/// lost or is another's, the cover itself tells: in a crowded pile that is every second one. Short chains may be no
+/// tubes, and tell nothing.
 double cost_of(const Cover& cover) {
   constexpr double kOff = 2.0;  // nats, two standard deviations of length
   double cost = cover.lengths.cost_of_common_lengths(), off = 0.0, on = 0.0;
   for (const Chain& chain : cover.chains) {
     cost += chain.path.cost - cover.lengths.gain(chain.length, chain.bridged, chain.room);
-    const bool is_off = chain.length_cost > kOff;
-    if (is_off) cost -= chain.length_cost;
-    if (!is_off || chain.length >= kShort * cover.lengths.radius) (is_off ? off : on) += 1.0;
+    if (chain.length_cost <= kOff) {
+      on += 1.0;
+      continue;
+    }
+    cost -= chain.length_cost;
+    if (chain.length >= kShort * cover.lengths.radius) off += 1.0;
   }
   return cost + entropy(off, on + off);
 }
