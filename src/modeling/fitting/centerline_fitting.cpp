@@ -133,7 +133,7 @@ double bend_tolerance(std::span<const VoteCurve> curves, double radius) {
 }
 
 std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const VoteCurve& votes, double tolerance,
-                                        std::span<const SurfacePoint> loose, double radius, const Vec3& viewpoint) {
+                                        const LoosePoints& loose, double radius, const Vec3& viewpoint) {
   const auto& [segment, surface, all_votes, curve] = votes;
   TubePiece piece{.nodes = {}, .radius = radius, .points = segment};
   if (curve.size() < 2 || polyline_length(curve) < 2.0 * radius) {

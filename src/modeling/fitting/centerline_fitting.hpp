@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "modeling/fitting/surface_fitting.hpp"
+#include "modeling/fitting/loose_points.hpp"
 #include "modeling/fitting/vote_curve.hpp"
 #include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/tube_model.hpp"
@@ -17,9 +17,9 @@ double bend_tolerance(std::span<const VoteCurve> curves, double radius);
 
 /// Fits consecutive cylinders of the known radius to a stretch: its curve is cut where it bends by more than the `tolerance`
 /// (metres), the nodes minimize the points' distances to the surface, and the ends grow as far as points show them, also
-/// those `loose` ones (in order of x) that no segment holds. Nothing results from votes that are no tube's.
+/// those `loose` ones that no segment holds. Nothing results from votes that are no tube's.
 std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const VoteCurve& votes, double tolerance,
-                                        std::span<const SurfacePoint> loose, double radius, const Vec3& viewpoint);
+                                        const LoosePoints& loose, double radius, const Vec3& viewpoint);
 
 /// A piece that turns back goes over from one tube to another, or runs twice along one: its parts, each with the points that
 /// are nearest to it.

@@ -5,6 +5,7 @@
 #include "modeling/fitting/branch_splitting.hpp"
 #include "modeling/fitting/centerline_fitting.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
+#include "modeling/fitting/end_growth.hpp"
 #include "modeling/fitting/flat_ends.hpp"
 #include "modeling/fitting/piece_cleaning.hpp"
 #include "modeling/parallel.hpp"
@@ -12,35 +13,6 @@
 
 namespace tubebin::modeling {
 namespace {
-
-/// The points that no segment holds, in order of x.
-std::vector<SurfacePoint> loose_points(const FilteredCloud& cloud, const std::vector<Segment>& segments) {
-  std::vector<bool> is_held(cloud.points.size(), false);
-  for (const Segment& segment : segments)
-    for (const std::uint32_t i : segment) is_held[i] = true;
-  std::vector<SurfacePoint> loose;
-  for (std::size_t i = 0; i < cloud.points.size(); ++i)
-    if (!is_held[i]) loose.push_back({cloud.points[i].cast<double>(), cloud.normals[i].cast<double>()});
-  std::ranges::stable_sort(loose, {}, [](const SurfacePoint& point) { return point.position.x(); });
-  return loose;
-}
-
-std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vector<Segment>& segments,
-                                    const ViewProjection& projection, double radius) {
-  const std::vector<VoteCurve> curves = gather_in_parallel(segments.size(), [&](std::size_t k) {
-    std::vector<VoteCurve> of_segment;
-    for (Stretch& stretch : split_branches(cloud, segments[k], radius))
-      of_segment.push_back(find_vote_curve(cloud, std::move(stretch), radius));
-    return of_segment;
-  });
-  const double tolerance = bend_tolerance(curves, radius);
-  const std::vector<SurfacePoint> loose = loose_points(cloud, segments);
-  return gather_in_parallel(curves.size(), [&](std::size_t k) {
-    const Vec3 viewpoint = viewpoint_of(cloud, curves[k].points, projection);
-    auto piece = fit_centerline(cloud, curves[k], tolerance, loose, radius, viewpoint);
-    return piece ? cut_where_it_turns_back(std::move(*piece), cloud.points) : std::vector<TubePiece>{};
-  });
-}
 
 /// The selected points as a cloud of their own; `source` are their places in `cloud`.
 FilteredCloud part_of(const FilteredCloud& cloud, Segment selected, const ViewProjection& projection, double radius) {
@@ -63,6 +35,23 @@ FilteredCloud still_unexplained(const FilteredCloud& rest, const FilteredCloud& 
 }
 
 }  // namespace
+
+std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vector<Segment>& segments,
+                                    const ViewProjection& projection, double radius) {
+  const std::vector<VoteCurve> curves = gather_in_parallel(segments.size(), [&](std::size_t k) {
+    std::vector<VoteCurve> of_segment;
+    for (Stretch& stretch : split_branches(cloud, segments[k], radius))
+      of_segment.push_back(find_vote_curve(cloud, std::move(stretch), radius));
+    return of_segment;
+  });
+  const double tolerance = bend_tolerance(curves, radius);
+  const LoosePoints loose(cloud, segments, kGrowthReach * radius);
+  return gather_in_parallel(curves.size(), [&](std::size_t k) {
+    const Vec3 viewpoint = viewpoint_of(cloud, curves[k].points, projection);
+    auto piece = fit_centerline(cloud, curves[k], tolerance, loose, radius, viewpoint);
+    return piece ? cut_where_it_turns_back(std::move(*piece), cloud.points) : std::vector<TubePiece>{};
+  });
+}
 
 std::vector<TubePiece> find_centerline_pieces(const FilteredCloud& cloud, const std::vector<Segment>& segments,
                                               const ViewProjection& projection, double radius) {

@@ -10,6 +10,11 @@
 
 namespace tubebin::modeling {
 
+/// The first round's.
+std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vector<Segment>& segments,
+                                    const ViewProjection& projection, double radius);
+
+/// Both rounds'.
 std::vector<TubePiece> find_centerline_pieces(const FilteredCloud& cloud, const std::vector<Segment>& segments,
                                               const ViewProjection& projection, double radius);
 

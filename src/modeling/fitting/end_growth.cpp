@@ -130,12 +130,10 @@ struct Support {
   }
 };
 
-/// The points about a place that moves on by steps shorter than a radius, gathered anew where it has moved far. The
-/// loose ones stand in order of x.
+/// The points about a place that moves on by steps shorter than a radius, gathered anew where it has moved far.
 class PointsAbout {
  public:
-  PointsAbout(const FilteredCloud& cloud, std::span<const std::uint32_t> own, std::span<const SurfacePoint> loose,
-              double radius)
+  PointsAbout(const FilteredCloud& cloud, std::span<const std::uint32_t> own, const LoosePoints& loose, double radius)
       : cloud_(cloud), own_(own), loose_(loose), radius_(radius) {}
 
   /// At least those within two radii.
@@ -143,31 +141,23 @@ class PointsAbout {
     if (!((place - gathered_about_).norm() <= 4.0 * radius_)) {
       gathered_about_ = place;
       gathered_.clear();
-      const double squared_reach = kReach * kReach * radius_ * radius_;
+      const double squared_reach = kGrowthReach * kGrowthReach * radius_ * radius_;
       for (const std::uint32_t i : own_) {
         const Vec3 position = cloud_.points[i].cast<double>();
         if ((position - place).squaredNorm() < squared_reach)
           gathered_.push_back({position, cloud_.normals[i].cast<double>()});
       }
-      for (const SurfacePoint& point : loose_about(place))
+      loose_.for_each_about(place, [&](const SurfacePoint& point) {
         if ((point.position - place).squaredNorm() < squared_reach) gathered_.push_back(point);
+      });
     }
     return gathered_;
   }
 
  private:
-  static constexpr double kReach = 6.0;  ///< radii
-
-  std::span<const SurfacePoint> loose_about(const Vec3& place) const {
-    const auto x_of = [](const SurfacePoint& point) { return point.position.x(); };
-    const auto first = std::ranges::lower_bound(loose_, place.x() - kReach * radius_, {}, x_of);
-    const auto last = std::ranges::upper_bound(first, loose_.end(), place.x() + kReach * radius_, {}, x_of);
-    return {first, last};
-  }
-
   const FilteredCloud& cloud_;
   std::span<const std::uint32_t> own_;
-  std::span<const SurfacePoint> loose_;
+  const LoosePoints& loose_;
   double radius_;
   Vec3 gathered_about_ = Vec3::Constant(std::numeric_limits<double>::infinity());
   std::vector<SurfacePoint> gathered_;
@@ -189,7 +179,7 @@ bool meets_itself(const std::vector<Vec3>& nodes, const Vec3& next, double radiu
 }  // namespace
 
 void grow_end(std::vector<Vec3>& nodes, const FilteredCloud& cloud, std::span<const std::uint32_t> own,
-              std::span<const SurfacePoint> loose, double radius, const Vec3& viewpoint) {
+              const LoosePoints& loose, double radius, const Vec3& viewpoint) {
   constexpr int kMostSteps = 1000;
   const double spacing = cloud.spacing;
   PointsAbout points(cloud, own, loose, radius);

@@ -1,12 +1,19 @@
 #include "modeling/fitting/piece_cleaning.hpp"
 
+#define BOOST_ALLOW_DEPRECATED_HEADERS  // its own rtree includes one
+
 #include <algorithm>
+#include <boost/geometry.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <utility>
 
 #include "modeling/labeling.hpp"
 #include "tubebin/modeling/filtering.hpp"
 
 namespace tubebin::modeling {
 namespace {
+
+namespace geometry = boost::geometry;
 
 /// The pieces' nodes, both ends moved outward by `by` metres.
 std::vector<std::vector<Vec3>> lengthened(const std::vector<TubePiece>& pieces, double by) {
@@ -36,6 +43,39 @@ bool is_well_seen(const TubePiece& piece, double spacing) {
   const double full = points_of_visible_stretch(piece.radius, piece.length(), spacing);
   return piece.length() > 2.0 * piece.radius && static_cast<double>(piece.points.size()) > 0.3 * full;
 }
+
+/// Finds pieces by their boxes.
+class PieceTree {
+ public:
+  explicit PieceTree(const std::vector<TubePiece>& pieces) {
+    std::vector<Entry> entries;
+    for (std::size_t k = 0; k < pieces.size(); ++k) entries.emplace_back(box(pieces[k], 0.0), k);
+    tree_ = Tree(entries);
+  }
+
+  /// Those whose boxes come nearer than `distance` metres to the piece's, ascending.
+  std::vector<std::size_t> near(const TubePiece& piece, double distance) const {
+    std::vector<std::size_t> found;
+    for (auto entry = tree_.qbegin(geometry::index::intersects(box(piece, distance))); entry != tree_.qend(); ++entry)
+      found.push_back(entry->second);
+    std::ranges::sort(found);
+    return found;
+  }
+
+ private:
+  using Corner = geometry::model::point<double, 3, geometry::cs::cartesian>;
+  using Box = geometry::model::box<Corner>;
+  using Entry = std::pair<Box, std::size_t>;
+  using Tree = geometry::index::rtree<Entry, geometry::index::quadratic<16>>;
+
+  static Box box(const TubePiece& piece, double margin) {
+    const Eigen::AlignedBox3d box = box_of(piece.nodes);
+    const Vec3 low = box.min().array() - margin, high = box.max().array() + margin;
+    return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
+  }
+
+  Tree tree_;
+};
 
 /// Cuts the last node's end of `nodes` back while it lies within `clearance` of `other`; false if nothing is left.
 bool cut_end(std::vector<Vec3>& nodes, const std::vector<Vec3>& other, double clearance, double step) {
@@ -86,18 +126,18 @@ void cut_overlaps(std::vector<TubePiece>& pieces) {
   std::stable_sort(pieces.begin(), pieces.end(),
                    [](const TubePiece& a, const TubePiece& b) { return a.length() > b.length(); });
   std::vector<bool> is_left(pieces.size(), true);
-  std::vector<Eigen::AlignedBox3d> boxes;  // pieces only get shorter
-  for (const TubePiece& piece : pieces) boxes.push_back(box_of(piece.nodes));
-  for (std::size_t a = 0; a < pieces.size(); ++a)
-    for (std::size_t b = 0; b < pieces.size() && is_left[a]; ++b) {
+  const PieceTree tree(pieces);  // pieces only get shorter
+  for (std::size_t a = 0; a < pieces.size(); ++a) {
+    const double clearance = pieces[a].radius / 2.0, step = pieces[a].radius / 8.0;
+    for (const std::size_t b : tree.near(pieces[a], clearance)) {
+      if (!is_left[a]) break;
       if (a == b || !is_left[b]) continue;
-      const double clearance = pieces[a].radius / 2.0, step = pieces[a].radius / 8.0;
-      if (boxes[a].squaredExteriorDistance(boxes[b]) > clearance * clearance) continue;
       for (int end = 0; end < 2 && is_left[a]; ++end) {
         is_left[a] = cut_end(pieces[a].nodes, pieces[b].nodes, clearance, step);
         std::reverse(pieces[a].nodes.begin(), pieces[a].nodes.end());
       }
     }
+  }
   std::vector<TubePiece> kept;
   for (std::size_t k = 0; k < pieces.size(); ++k)
     if (is_left[k] && pieces[k].length() > pieces[k].radius / 4.0) kept.push_back(std::move(pieces[k]));

@@ -78,19 +78,23 @@ struct RadiusChange {
   }
 };
 
-/// How the visible sides look: what is seen between 50 degrees left and right of the top, as the viewpoint has it.
+/// How the visible sides look, to 53 degrees left and right of the top as the viewpoint has it, and the outline.
 void look_at_sides(const TubePiece& piece, const OcclusionTest& occlusion, PieceEvidence& evidence) {
   double samples = 0.0;
   for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
     const Vec3 along = piece.nodes[k + 1] - piece.nodes[k];
     const int steps = static_cast<int>(along.norm() / piece.radius) + 1;
     for (int step = 0; step < steps; ++step) {
-      const StretchEvidence sides = occlusion.sides(piece.nodes[k] + (step + 0.5) / steps * along, along.normalized());
+      const Vec3 center = piece.nodes[k] + (step + 0.5) / steps * along, direction = along.normalized();
+      const StretchEvidence sides = occlusion.sides(center, direction);
+      const OutlineEvidence outline = occlusion.outline(center, direction);
       evidence.surface += sides.surface, evidence.empty += sides.empty;
+      evidence.outline.edge += outline.edge, evidence.outline.flat += outline.flat;
       samples += 1.0;
     }
   }
-  evidence.surface /= std::max(samples, 1.0), evidence.empty /= std::max(samples, 1.0);
+  for (double* part : {&evidence.surface, &evidence.empty, &evidence.outline.edge, &evidence.outline.flat})
+    *part /= std::max(samples, 1.0);
 }
 
 /// A tube's own solid keeps places of its centreline two radii apart, but for those less than the tightest half turn apart
@@ -147,6 +151,11 @@ PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point
 
 bool has_other_radius(const PieceEvidence& evidence) {
   return std::abs(evidence.curvature - 1.0) > 0.15 + 4.0 * evidence.curvature_error;
+}
+
+bool goes_on_beside(const PieceEvidence& evidence) {
+  constexpr double kChance = 0.1;  // of flanks that noise puts in front
+  return evidence.outline.flat > std::max(evidence.outline.edge, kChance);
 }
 
 bool is_tube(const PieceEvidence& evidence, double radius, double noise) {

@@ -15,6 +15,7 @@ struct PieceEvidence {
   double sigma = 0.0;            ///< metres, of the points' distances to the best surface of any curvature
   double surface = 0.0;          ///< part of its visible sides where the scanner measured a surface
   double empty = 0.0;            ///< part of them where it saw through, and so no tube is
+  OutlineEvidence outline;       ///< on average over its length
   double coiled = 0.0;           ///< part of its length within a radius of another place of its centreline
 };
 
@@ -23,6 +24,10 @@ PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point
 
 /// Whether the points are clearly of another curvature than a tube's of this radius.
 bool has_other_radius(const PieceEvidence& evidence);
+
+/// Whether the surface goes on beyond the tube's outline more than it ends there, as the fold of a cloth or a wave of rough ground
+/// does. So does a tube in a close row that is seen obliquely.
+bool goes_on_beside(const PieceEvidence& evidence);
 
 /// Whether a tube explains the evidence better than any flat strip or chance: curved like a tube of this radius, as far
 /// as the points can tell, with points on its surface and no sides that the scanner saw through.

@@ -13,6 +13,7 @@
 #include "modeling/fitting/piece_cleaning.hpp"
 #include "modeling/fitting/piece_evidence.hpp"
 #include "modeling/fitting/tube_stretches.hpp"
+#include "modeling/fitting/vote_sheets.hpp"
 #include "modeling/input/normals.hpp"
 #include "modeling/input/radius_estimation.hpp"
 #include "modeling/median.hpp"
@@ -25,6 +26,10 @@ constexpr std::size_t kMostClasses = 4, kMostTries = 8;
 
 /// So many pieces are joined in a second or two; a pile of a hundred tubes has some five hundred.
 constexpr std::size_t kMostPieces = 1500;
+
+/// A hundred tubes, forty radii long and seen from end to end, have as many a sixth of a radius apart. Where the points that
+/// were looked through for the radii so far are more, no further radius is looked for.
+constexpr std::size_t kMostPoints = 300'000;
 
 /// In nats, of a radius' long pieces, which then know it to 1 %. Edges and rims seem round here and there, and of no one
 /// radius. Less is believed where no radius has as much.
@@ -104,6 +109,7 @@ class ClassFinder {
     const std::size_t enough = cloud_.points.size() / 100;
     for (std::size_t k = 0; k < kMostTries && possible_.size() < kMostClasses; ++k) {
       if (rest_ && rest_->points.size() < enough) break;
+      if (!possible_.empty() && sampled_ > kMostPoints) break;
       const double seen = likeliest_radius(left(), tried, enough);
       if (seen <= 0.0) break;
       PossibleClass found = refined_class(left(), seen, tried);
@@ -161,72 +167,107 @@ class ClassFinder {
     return found.evidence > std::max(kEnoughEvidence, share);
   }
 
+  /// Points `apart` metres from each other, or farther where they would be too many.
+  FilteredCloud sample_of(const FilteredCloud& cloud, double apart, double radius) const {
+    const double share = static_cast<double>(cloud.points.size()) / kMostPoints;
+    return thinned(cloud, std::max(apart, cloud.spacing * std::sqrt(share)), projection_, radius);
+  }
+
   /// As the longest pieces that are tubes show it; 0 where none is.
   double refined_radius(const FilteredCloud& cloud, double radius) {
-    constexpr std::size_t kSegments = 12, kPieces = 5;
+    constexpr std::size_t kSegments = 24, kPieces = 5;
     // A quarter of a radius apart, a stretch of tube still has some ten votes in a voxel of segment_by_votes.
-    const FilteredCloud sample = thinned(cloud, radius / 4.0, projection_, radius);
+    const FilteredCloud sample = without_sheets(sample_of(cloud, radius / 4.0, radius), radius);
     auto segments = segment_by_votes(sample, radius);
     std::ranges::sort(segments, [](const Segment& a, const Segment& b) { return a.size() > b.size(); });
     if (segments.size() > kSegments) segments.resize(kSegments);
     const OcclusionTest occlusion = occlusion_.with_radius(radius);
-    const auto is_round = [&](const TubePiece& piece) {
-      const PieceEvidence evidence = examine_piece(piece, sample.points, occlusion);
-      return std::abs(evidence.curvature - 1.0) <= 0.4 && evidence.empty <= 0.3;
+    const auto round_ones = [&](std::vector<TubePiece> pieces) {
+      std::vector<ExaminedPiece> round;
+      for (TubePiece& piece : pieces) {
+        const PieceEvidence evidence = examine_piece(piece, sample.points, occlusion);
+        if (std::abs(evidence.curvature - 1.0) <= 0.4 && evidence.empty <= 0.3)
+          round.push_back({std::move(piece), evidence});
+      }
+      return round;
     };
-    const auto round_piece = [&](const Segment& segment) {
+    const auto longest_piece = [&](const Segment& segment) {
       // Bends that are cut would make the radius too small.
       const VoteCurve curve =
           find_vote_curve(sample, std::move(split_branches(sample, segment, radius).front()), radius);
       const auto piece = fit_centerline(sample, curve, bend_tolerance({}, radius), {}, radius,
                                         viewpoint_of(sample, segment, projection_));
-      return piece && is_round(*piece) ? std::vector{*piece} : std::vector<TubePiece>{};
+      return round_ones(piece ? std::vector{*piece} : std::vector<TubePiece>{});
     };
-    std::vector<TubePiece> pieces;
-    for (std::size_t next = 0; next < segments.size() && pieces.size() < kPieces;) {
-      const std::size_t count = std::min(kPieces - pieces.size(), segments.size() - next);
-      std::ranges::move(gather_in_parallel(count, [&](std::size_t k) { return round_piece(segments[next + k]); }),
-                        std::back_inserter(pieces));
+    std::vector<TubePiece> outlined, others;
+    const auto add = [&](std::vector<ExaminedPiece> round) {
+      for (auto& [piece, evidence] : round) (goes_on_beside(evidence) ? others : outlined).push_back(std::move(piece));
+    };
+    for (std::size_t next = 0; next < segments.size() && outlined.size() < kPieces;) {
+      const std::size_t count = std::min(kPieces - outlined.size(), segments.size() - next);
+      add(gather_in_parallel(count, [&](std::size_t k) { return longest_piece(segments[next + k]); }));
       next += count;
     }
     // A ring's surface is no one piece.
-    if (pieces.empty())
-      std::ranges::copy_if(find_centerline_pieces(sample, segments, projection_, radius), std::back_inserter(pieces),
-                           is_round);
+    if (outlined.empty() && others.empty()) add(round_ones(fit_segments(sample, segments, projection_, radius)));
+    const std::vector<TubePiece>& pieces = outlined.empty() ? others : outlined;
     return pieces.empty() ? 0.0 : refine_radius(pieces, sample.points, radius);
   }
 
   /// Before a known background all but what other tubes leave over is tube.
   bool all_is_tube() const { return background_is_known_ && !rest_; }
 
-  /// The pieces that are tube, and of the others what is.
-  std::vector<ExaminedPiece> examined_tubes(const FilteredCloud& sample, double radius) const {
+  /// The pieces that are tube, and of the others what is. `outlined`: where their outlines show it.
+  std::vector<ExaminedPiece> examined_tubes(const std::vector<TubePiece>& pieces, const FilteredCloud& sample,
+                                            double radius, bool outlined) const {
     const OcclusionTest occlusion = occlusion_.with_radius(radius);
     const auto examine = [&](const TubePiece& piece) { return examine_piece(piece, sample.points, occlusion); };
-    const auto is_tube_by_itself = [&](const TubePiece& piece) { return is_tube(examine(piece), radius, noise_); };
-    std::vector<TubePiece> pieces =
-        find_centerline_pieces(sample, segment_by_votes(sample, radius), projection_, radius);
+    const auto shows_tube = [&](const PieceEvidence& evidence) {
+      if (all_is_tube()) return !has_other_radius(evidence);
+      return is_tube(evidence, radius, noise_) && !(outlined && goes_on_beside(evidence));
+    };
+    const auto is_tube_by_itself = [&](const TubePiece& piece) { return shows_tube(examine(piece)); };
     return gather_in_parallel(pieces.size(), [&](std::size_t k) {
       std::vector<ExaminedPiece> tubes;
       const PieceEvidence evidence = examine(pieces[k]);
-      if (all_is_tube() ? !has_other_radius(evidence) : is_tube(evidence, radius, noise_)) {
-        tubes.push_back({std::move(pieces[k]), evidence});
+      if (shows_tube(evidence)) {
+        tubes.push_back({pieces[k], evidence});
       } else if (!all_is_tube()) {
         for (TubePiece& stretch : tube_stretches(pieces[k], sample.points, is_tube_by_itself))
-          if (const PieceEvidence own = examine(stretch); is_tube(own, radius, noise_))
-            tubes.push_back({std::move(stretch), own});
+          if (const PieceEvidence own = examine(stretch); shows_tube(own)) tubes.push_back({std::move(stretch), own});
       }
       return tubes;
     });
   }
 
+  /// The part of all that is not flat which lies on tubes: earlier classes' and these, of a sample of `sampled` points of the rest.
+  double tube_part(const std::vector<ExaminedPiece>& tubes, std::size_t sampled) {
+    double on_tubes = 0.0;
+    for (const ExaminedPiece& tube : tubes) on_tubes += static_cast<double>(tube.piece.points.size());
+    const double rest = static_cast<double>(left().points.size()) / static_cast<double>(cloud_.points.size());
+    return 1.0 - rest * (1.0 - on_tubes / static_cast<double>(std::max<std::size_t>(sampled, 1)));
+  }
+
+  /// Beside a bin or on a table most of what is not flat is tube. On rough ground, cloth or gravel it is not, and much of that is
+  /// as round as a tube somewhere: what looks like one has to have a tube's outline there.
+  std::vector<ExaminedPiece> tubes_in(const FilteredCloud& sample, double radius) {
+    const FilteredCloud searched = all_is_tube() ? sample : without_sheets(sample, radius);
+    const std::vector<TubePiece> pieces =
+        find_centerline_pieces(searched, segment_by_votes(searched, radius), projection_, radius);
+    std::vector<ExaminedPiece> tubes = examined_tubes(pieces, searched, radius, false);
+    if (!all_is_tube() && tube_part(tubes, sample.points.size()) < 0.5)
+      tubes = examined_tubes(pieces, searched, radius, true);
+    return tubes;
+  }
+
   PossibleClass pieces_of(const FilteredCloud& cloud, double radius) {
     // Points that lie closer together cost time and add nothing: these make 24 votes a voxel of segment_by_votes.
-    const FilteredCloud sample = thinned(cloud, radius / 6.0, projection_, radius);
+    const FilteredCloud sample = sample_of(cloud, radius / 6.0, radius);
+    sampled_ += sample.points.size();
     PossibleClass found{.sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}};
     double information = 0.0;
     std::vector<double> offs;
-    for (auto& [piece, evidence] : examined_tubes(sample, radius)) {
+    for (auto& [piece, evidence] : tubes_in(sample, radius)) {
       if (!all_is_tube() && stands_upright(piece, up_)) {
         standing_.push_back(std::move(piece));
         continue;
@@ -283,6 +324,7 @@ class ClassFinder {
   double noise_;
   bool background_is_known_;
   Vec3 up_;
+  std::size_t sampled_ = 0;  ///< points, of all tries
   std::optional<FilteredCloud> rest_;
   std::vector<RoundPlace> round_;
   std::vector<TubePiece> standing_;

@@ -1,5 +1,7 @@
 #include "modeling/fitting/vote_voxels.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -81,6 +83,24 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> VoteVoxels::links(double li
       if (j != kNone && (means_[i] - means_[j]).squaredNorm() <= squared) pairs.emplace_back(i, j);
     }
   return pairs;
+}
+
+double VoteVoxels::spread(std::uint32_t voxel) const {
+  cloud::Point sum = cloud::Point::Zero();
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  float count = 0.0f;
+  for (int cell = 0; cell < 27; ++cell) {
+    const auto& [x, y, z] = keys_[voxel];
+    const std::uint32_t other = find({x + cell / 9 - 1, y + cell / 3 % 3 - 1, z + cell % 3 - 1});
+    if (other == kNone) continue;
+    const auto weight = static_cast<float>(counts_[other]);
+    const cloud::Point offset = means_[other] - means_[voxel];
+    count += weight, sum += weight * offset, squares += weight * offset * offset.transpose();
+  }
+  const cloud::Point mean = sum / count;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(squares / count - mean * mean.transpose(), Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()(1) / std::max(solver.eigenvalues()(2), 1e-12f);
 }
 
 std::vector<std::uint32_t> connected_components(std::size_t count,

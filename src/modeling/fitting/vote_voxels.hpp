@@ -24,6 +24,9 @@ class VoteVoxels {
   std::uint32_t voxel_of(std::size_t vote) const { return voxel_of_vote_[vote]; }
   /// Pairs of adjacent voxels (26-neighbourhood) whose mean votes are at most `link` metres apart.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links(double link) const;
+  /// The second largest variance of the votes in the 3 x 3 x 3 voxels about one over the largest: near 0 on a line, near 1 on
+  /// a sheet.
+  double spread(std::uint32_t voxel) const;
 
  private:
   struct Key {

@@ -36,7 +36,8 @@ std::vector<OcclusionTest::View> OcclusionTest::views(const ModelingInput& input
                                                       double spacing) {
   std::vector<View> views;
   const auto add = [&](const ViewProjection& of_view, std::span<const cloud::Point> points, double apart) {
-    views.push_back({of_view.viewpoint().cast<double>(), {of_view, points, view_cell(points, of_view, apart)}});
+    const float cell = view_cell(points, of_view, apart);
+    views.push_back({of_view.viewpoint().cast<double>(), {of_view, points, cell}, cell});
   };
   if (input.sources.empty()) {
     add(projection, input.points, spacing);
@@ -83,9 +84,34 @@ OcclusionTest OcclusionTest::with_radius(double radius) const {
   return other;
 }
 
-/// At points of the surface so many radii to the right and left of the centreline, as each scanner sees it.
+OutlineEvidence OcclusionTest::outline(const Vec3& center, const Vec3& direction) const {
+  constexpr double kFlank = 0.85, kBeside = 1.25;
+  const auto height = [](double x) { return std::sqrt(1.0 - x * x); };
+  // A cell of the scan has its nearest point's range, half a cell up the flank on average.
+  const View& view = views_->front();
+  const double half_cell = 0.5 * view.cell * (view.viewpoint - center).norm() / radius_;
+  const double bias = height(std::max(kFlank - half_cell, 0.0)) - height(kFlank);
+  const double least = std::max(0.1 + bias, 0.2), most = 1.0;  // in front of the flank, radii
+  const double middle = height(kFlank) + (least + most) / 2.0;
+  const Place flanks[] = {{-kFlank, middle}, {kFlank, middle}};
+  // From 0.6 radii below the axis to 0.3 above: another tube that touches this one's side is higher or lower.
+  constexpr double kLow = -0.15, kTolerance = 0.45;
+  const Place beside[] = {{-kBeside, kLow}, {kBeside, kLow}};
+  return {.edge = evidence_at(center, direction, beside, kTolerance).empty,
+          .flat = evidence_at(center, direction, flanks, (most - least) / 2.0).surface};
+}
+
 StretchEvidence OcclusionTest::evidence_across(const Vec3& center, const Vec3& direction,
                                                std::span<const double> across) const {
+  std::array<Place, kMostAcross> places;
+  for (std::size_t k = 0; k < across.size(); ++k) places[k] = {across[k], std::sqrt(1.0 - across[k] * across[k])};
+  // Half a radius of tolerance is far above the noise, and far below the tube's thickness by which a floor or another
+  // tube lies behind.
+  return evidence_at(center, direction, std::span(places).first(across.size()), 0.5);
+}
+
+StretchEvidence OcclusionTest::evidence_at(const Vec3& center, const Vec3& direction, std::span<const Place> places,
+                                           double tolerance) const {
   using Evidence = RangeImage::Evidence;
   std::array<Evidence, kMostAcross> seen;
   seen.fill(Evidence::beyond);
@@ -93,16 +119,13 @@ StretchEvidence OcclusionTest::evidence_across(const Vec3& center, const Vec3& d
     const Vec3 to_viewpoint = view.viewpoint - center;
     const Vec3 up = (to_viewpoint - to_viewpoint.dot(direction) * direction).normalized();
     const Vec3 side = direction.cross(up);
-    // Half a radius of tolerance is far above the noise, and far below the tube's thickness by which a floor or another
-    // tube lies behind.
-    for (std::size_t k = 0; k < across.size(); ++k) {
-      const double x = across[k];
-      const Vec3 surface = center + radius_ * (x * side + std::sqrt(1.0 - x * x) * up);
-      seen[k] = std::max(seen[k], view.image.evidence(surface.cast<float>(), static_cast<float>(radius_ / 2.0)));
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const Vec3 place = center + radius_ * (places[k].x() * side + places[k].y() * up);
+      seen[k] = std::max(seen[k], view.image.evidence(place.cast<float>(), static_cast<float>(tolerance * radius_)));
     }
   }
   StretchEvidence sum;
-  for (const Evidence evidence : std::span(seen).first(across.size())) switch (evidence) {
+  for (const Evidence evidence : std::span(seen).first(places.size())) switch (evidence) {
       case Evidence::outside:
       case Evidence::missing:
       case Evidence::hidden:
@@ -119,7 +142,7 @@ StretchEvidence OcclusionTest::evidence_across(const Vec3& center, const Vec3& d
         sum.empty += 1.0;
         break;
     }
-  const auto count = static_cast<double>(across.size());
+  const auto count = static_cast<double>(places.size());
   return {sum.hidden / count, sum.surface / count, sum.empty / count, sum.no_data / count};
 }
 

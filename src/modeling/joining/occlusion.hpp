@@ -19,6 +19,13 @@ struct StretchEvidence {
   double no_data = 0.0;  ///< where the scanner measured nothing at all
 };
 
+/// How the scan goes on at the two sides of a tube, each as a part of 1.
+struct OutlineEvidence {
+  double edge = 0.0;  ///< just beside the tube, seen past it to what lies at least half a radius lower than its axis
+  double flat =
+      0.0;  ///< at the tube's flank, a surface in front of it by a part of a radius: less curved than the tube
+};
+
 class OcclusionTest {
  public:
   /// `spacing`: metres between neighbouring points of the whole input at their median range; of a merged cloud each
@@ -33,6 +40,8 @@ class OcclusionTest {
   StretchEvidence around(const Vec3& center, const Vec3& direction) const;
   /// Of the sides of a tube about one point of its centreline, where they are in sight.
   StretchEvidence sides(const Vec3& center, const Vec3& direction) const;
+  /// How its outline about one point of its centreline looks.
+  OutlineEvidence outline(const Vec3& center, const Vec3& direction) const;
   /// What the scanners that face a place of a surface saw there, to a quarter of a radius; outside where none does. `normal` is
   /// unit.
   RangeImage::Evidence facing(const Vec3& place, const Vec3& normal) const;
@@ -43,6 +52,12 @@ class OcclusionTest {
   double hidden_reach(const Vec3& end, const Vec3& outward, double limit) const;
 
  private:
+  /// Of a place beside the centreline as a scanner sees it, radii: to the right, and towards the scanner.
+  using Place = Eigen::Vector2d;
+  /// A place's distance from the tube's surface that still counts as there is `tolerance` radii.
+  StretchEvidence evidence_at(const Vec3& center, const Vec3& direction, std::span<const Place> places,
+                              double tolerance) const;
+  /// At the surface, so many radii to the right.
   StretchEvidence evidence_across(const Vec3& center, const Vec3& direction, std::span<const double> across) const;
   bool in_solid(const Vec3& point) const;
 
@@ -50,6 +65,7 @@ class OcclusionTest {
   struct View {
     Vec3 viewpoint;
     RangeImage image;
+    double cell;  ///< radians
   };
   static std::vector<View> views(const ModelingInput& input, const ViewProjection& projection, double spacing);
 
