@@ -1,5 +1,5 @@
-"""What real scanners do to depth images: each takes depths (metres, of pixels), which of them are measured, the focal length
-(pixels) and a random generator, and returns depths and which are measured."""
+"""Depth images as real scanners have them, and over other ground: each takes depths (metres, of pixels), which of them are measured,
+which are a tube's, the focal length (pixels) and a random generator, and returns depths and which are measured."""
 import numpy as np
 from scipy import ndimage
 
@@ -10,13 +10,13 @@ def smooth_noise(shape, pixels, random):
     return noise / noise.std()
 
 
-def missing(depth, measured, focal, random):
+def missing(depth, measured, tubes, focal, random):
     """Glare and dark paint: a twelfth of the picture has no data, in patches some ten pixels wide."""
     patches = smooth_noise(depth.shape, 4, random)
     return depth, measured & (patches < np.quantile(patches, 11 / 12))
 
 
-def shadow(depth, measured, focal, random):
+def shadow(depth, measured, tubes, focal, random):
     """No data where a projector 0.3 m to the right of the camera gives no light: what is nearer, farther right in the same row,
     reaches as far to the left as the projector sees it."""
     seen = np.where(measured, np.arange(depth.shape[1]) - focal * 0.3 / np.where(measured, depth, 1.0), np.inf)
@@ -24,18 +24,23 @@ def shadow(depth, measured, focal, random):
     return depth, measured & (seen < nearest + 1.0)
 
 
-def ripples(depth, measured, focal, random):
+def ripples(depth, measured, tubes, focal, random):
     """Noise of a fifth of the points' spacing that neighbours three pixels apart share, as patterns of light leave it."""
     return depth + 0.2 * depth / focal * smooth_noise(depth.shape, 3, random), measured
 
 
-def smeared(depth, measured, focal, random):
+def smeared(depth, measured, tubes, focal, random):
     """Each pixel is a mean of what lies within half a pixel of it: points in the air along all edges."""
     known = ndimage.gaussian_filter(measured.astype(float), 0.5)
     return ndimage.gaussian_filter(np.where(measured, depth, 0.0), 0.5) / np.maximum(known, 1e-9), measured
 
 
-ARTEFACTS = {artefact.__name__: artefact for artefact in (missing, shadow, ripples, smeared)}
+def liner(depth, measured, tubes, focal, random):
+    """A crumpled liner lies on all that is no tube: 2 mm up and down (one standard deviation), folds some twelve pixels wide."""
+    return depth + np.where(tubes, 0.0, 0.002 * smooth_noise(depth.shape, 12, random)), measured
+
+
+ARTEFACTS = {artefact.__name__: artefact for artefact in (missing, shadow, ripples, smeared, liner)}
 
 
 def with_artefact(image, artefact, random):
@@ -43,6 +48,6 @@ def with_artefact(image, artefact, random):
     step, start = image['depth_step'], image['depth_of_0']
     depth, measured = start + image['depth'] * step, image['depth'] > 0
     focal = image['depth'].shape[1] / 2 / np.tan(image['hfov'] / 2)
-    depth, measured = ARTEFACTS[artefact](depth, measured, focal, random)
+    depth, measured = ARTEFACTS[artefact](depth, measured, image['label'] > 0, focal, random)
     depth = np.where(measured, np.round((depth - start) / step), 0)
     return {**image, 'depth': np.clip(depth, 0, np.iinfo(image['depth'].dtype).max).astype(image['depth'].dtype)}

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "core/limits_text.hpp"
 #include "tubebin/core/atomic_file.hpp"
@@ -82,6 +83,9 @@ Json parse_bounded(std::string_view text, const std::string& name) {
   if (text.size() > kJsonBytesMax)
     throw_io_error("{}: has {} bytes of JSON; valid: up to {}", name, text.size(), kJsonBytesMax);
   check_depth(text, name);
+  // Json's destructor allocates, and ends the program where it can't: memory that does not last for the values runs out here.
+  const std::size_t room = 8 * text.size();
+  ::operator delete(::operator new(room));
   try {
     return Json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {

@@ -47,11 +47,7 @@ bool is_well_seen(const TubePiece& piece, double spacing) {
 /// Finds pieces by their boxes.
 class PieceTree {
  public:
-  explicit PieceTree(const std::vector<TubePiece>& pieces) {
-    std::vector<Entry> entries;
-    for (std::size_t k = 0; k < pieces.size(); ++k) entries.emplace_back(box(pieces[k], 0.0), k);
-    tree_ = Tree(entries);
-  }
+  explicit PieceTree(const std::vector<TubePiece>& pieces) : tree_(entries_of(pieces)) {}
 
   /// Those whose boxes come nearer than `distance` metres to the piece's, ascending.
   std::vector<std::size_t> near(const TubePiece& piece, double distance) const {
@@ -67,6 +63,12 @@ class PieceTree {
   using Box = geometry::model::box<Corner>;
   using Entry = std::pair<Box, std::size_t>;
   using Tree = geometry::index::rtree<Entry, geometry::index::quadratic<16>>;
+
+  static std::vector<Entry> entries_of(const std::vector<TubePiece>& pieces) {
+    std::vector<Entry> entries;
+    for (std::size_t k = 0; k < pieces.size(); ++k) entries.emplace_back(box(pieces[k], 0.0), k);
+    return entries;
+  }
 
   static Box box(const TubePiece& piece, double margin) {
     const Eigen::AlignedBox3d box = box_of(piece.nodes);

@@ -37,6 +37,9 @@ constexpr double kEnoughEvidence = 5000.0;
 /// And of a further radius as a part of the first one's: where tubes branch or touch, some surface is as round as a thicker tube.
 constexpr double kFurtherShare = 0.01;
 
+/// Of what is not flat, the part on tubes and what looks like them: beside a bin or on a table more, on rough ground less.
+constexpr double kMostlyTube = 0.4;
+
 /// In units of 1 / radius: so far off bends and joints put a tube's curvature.
 constexpr double kSureOff = 0.05;
 
@@ -173,11 +176,18 @@ class ClassFinder {
     return thinned(cloud, std::max(apart, cloud.spacing * std::sqrt(share)), projection_, radius);
   }
 
+  /// What is left where ground that is not flat has been taken away; all where the ground is known.
+  FilteredCloud without_ground(FilteredCloud sample, double radius) const {
+    return background_is_known_ ? std::move(sample) : without_sheets(sample, radius);
+  }
+
+  bool has_no_outline(const PieceEvidence& evidence) const { return !background_is_known_ && goes_on_beside(evidence); }
+
   /// As the longest pieces that are tubes show it; 0 where none is.
   double refined_radius(const FilteredCloud& cloud, double radius) {
     constexpr std::size_t kSegments = 24, kPieces = 5;
     // A quarter of a radius apart, a stretch of tube still has some ten votes in a voxel of segment_by_votes.
-    const FilteredCloud sample = without_sheets(sample_of(cloud, radius / 4.0, radius), radius);
+    const FilteredCloud sample = without_ground(sample_of(cloud, radius / 4.0, radius), radius);
     auto segments = segment_by_votes(sample, radius);
     std::ranges::sort(segments, [](const Segment& a, const Segment& b) { return a.size() > b.size(); });
     if (segments.size() > kSegments) segments.resize(kSegments);
@@ -201,7 +211,8 @@ class ClassFinder {
     };
     std::vector<TubePiece> outlined, others;
     const auto add = [&](std::vector<ExaminedPiece> round) {
-      for (auto& [piece, evidence] : round) (goes_on_beside(evidence) ? others : outlined).push_back(std::move(piece));
+      for (ExaminedPiece& found : round)
+        (has_no_outline(found.evidence) ? others : outlined).push_back(std::move(found.piece));
     };
     for (std::size_t next = 0; next < segments.size() && outlined.size() < kPieces;) {
       const std::size_t count = std::min(kPieces - outlined.size(), segments.size() - next);
@@ -224,7 +235,7 @@ class ClassFinder {
     const auto examine = [&](const TubePiece& piece) { return examine_piece(piece, sample.points, occlusion); };
     const auto shows_tube = [&](const PieceEvidence& evidence) {
       if (all_is_tube()) return !has_other_radius(evidence);
-      return is_tube(evidence, radius, noise_) && !(outlined && goes_on_beside(evidence));
+      return is_tube(evidence, radius, noise_) && !(outlined && has_no_outline(evidence));
     };
     const auto is_tube_by_itself = [&](const TubePiece& piece) { return shows_tube(examine(piece)); };
     return gather_in_parallel(pieces.size(), [&](std::size_t k) {
@@ -248,15 +259,13 @@ class ClassFinder {
     return 1.0 - rest * (1.0 - on_tubes / static_cast<double>(std::max<std::size_t>(sampled, 1)));
   }
 
-  /// Beside a bin or on a table most of what is not flat is tube. On rough ground, cloth or gravel it is not, and much of that is
-  /// as round as a tube somewhere: what looks like one has to have a tube's outline there.
+  /// Cloth, gravel and other rough ground is as round as a tube somewhere: what looks like one has to have a tube's outline there.
   std::vector<ExaminedPiece> tubes_in(const FilteredCloud& sample, double radius) {
-    const FilteredCloud searched = all_is_tube() ? sample : without_sheets(sample, radius);
+    const FilteredCloud searched = without_ground(sample, radius);
     const std::vector<TubePiece> pieces =
         find_centerline_pieces(searched, segment_by_votes(searched, radius), projection_, radius);
     std::vector<ExaminedPiece> tubes = examined_tubes(pieces, searched, radius, false);
-    if (!all_is_tube() && tube_part(tubes, sample.points.size()) < 0.5)
-      tubes = examined_tubes(pieces, searched, radius, true);
+    if (tube_part(tubes, sample.points.size()) < kMostlyTube) tubes = examined_tubes(pieces, searched, radius, true);
     return tubes;
   }
 

@@ -98,8 +98,8 @@ double VoteVoxels::spread(std::uint32_t voxel) const {
     count += weight, sum += weight * offset, squares += weight * offset * offset.transpose();
   }
   const cloud::Point mean = sum / count;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(squares / count - mean * mean.transpose(), Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver(squares / count - mean * mean.transpose(),
+                                                              Eigen::EigenvaluesOnly);
   return solver.eigenvalues()(1) / std::max(solver.eigenvalues()(2), 1e-12f);
 }
 
