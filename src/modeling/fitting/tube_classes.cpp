@@ -229,22 +229,21 @@ class ClassFinder {
   bool all_is_tube() const { return background_is_known_ && !rest_; }
 
   /// The pieces that are tube, and of the others what is. `outlined`: where their outlines show it.
-  std::vector<ExaminedPiece> examined_tubes(const std::vector<TubePiece>& pieces, const FilteredCloud& sample,
-                                            double radius, bool outlined) const {
+  std::vector<ExaminedPiece> tubes_of(const std::vector<ExaminedPiece>& pieces, const FilteredCloud& sample,
+                                      double radius, bool outlined) const {
     const OcclusionTest occlusion = occlusion_.with_radius(radius);
     const auto examine = [&](const TubePiece& piece) { return examine_piece(piece, sample.points, occlusion); };
     const auto shows_tube = [&](const PieceEvidence& evidence) {
       if (all_is_tube()) return !has_other_radius(evidence);
-      return is_tube(evidence, radius, noise_) && !(outlined && has_no_outline(evidence));
+      return is_tube(evidence, radius, noise_) && !(outlined && goes_on_beside(evidence));
     };
     const auto is_tube_by_itself = [&](const TubePiece& piece) { return shows_tube(examine(piece)); };
     return gather_in_parallel(pieces.size(), [&](std::size_t k) {
       std::vector<ExaminedPiece> tubes;
-      const PieceEvidence evidence = examine(pieces[k]);
-      if (shows_tube(evidence)) {
-        tubes.push_back({pieces[k], evidence});
+      if (shows_tube(pieces[k].evidence)) {
+        tubes.push_back(pieces[k]);
       } else if (!all_is_tube()) {
-        for (TubePiece& stretch : tube_stretches(pieces[k], sample.points, is_tube_by_itself))
+        for (TubePiece& stretch : tube_stretches(pieces[k].piece, sample.points, is_tube_by_itself))
           if (const PieceEvidence own = examine(stretch); shows_tube(own)) tubes.push_back({std::move(stretch), own});
       }
       return tubes;
@@ -260,23 +259,30 @@ class ClassFinder {
   }
 
   /// Cloth, gravel and other rough ground is as round as a tube somewhere: what looks like one has to have a tube's outline there.
-  std::vector<ExaminedPiece> tubes_in(const FilteredCloud& sample, double radius) {
-    const FilteredCloud searched = without_ground(sample, radius);
-    const std::vector<TubePiece> pieces =
+  std::vector<ExaminedPiece> tubes_in(FilteredCloud sample, double radius) {
+    const std::size_t sampled = sample.points.size();
+    const FilteredCloud searched = without_ground(std::move(sample), radius);
+    std::vector<TubePiece> found =
         find_centerline_pieces(searched, segment_by_votes(searched, radius), projection_, radius);
-    std::vector<ExaminedPiece> tubes = examined_tubes(pieces, searched, radius, false);
-    if (tube_part(tubes, sample.points.size()) < kMostlyTube) tubes = examined_tubes(pieces, searched, radius, true);
+    const OcclusionTest occlusion = occlusion_.with_radius(radius);
+    const std::vector<ExaminedPiece> pieces = gather_in_parallel(found.size(), [&](std::size_t k) {
+      const PieceEvidence evidence = examine_piece(found[k], searched.points, occlusion);
+      return std::vector<ExaminedPiece>{{std::move(found[k]), evidence}};
+    });
+    std::vector<ExaminedPiece> tubes = tubes_of(pieces, searched, radius, false);
+    if (!background_is_known_ && tube_part(tubes, sampled) < kMostlyTube)
+      tubes = tubes_of(pieces, searched, radius, true);
     return tubes;
   }
 
   PossibleClass pieces_of(const FilteredCloud& cloud, double radius) {
     // Points that lie closer together cost time and add nothing: these make 24 votes a voxel of segment_by_votes.
-    const FilteredCloud sample = sample_of(cloud, radius / 6.0, radius);
+    FilteredCloud sample = sample_of(cloud, radius / 6.0, radius);
     sampled_ += sample.points.size();
     PossibleClass found{.sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}};
     double information = 0.0;
     std::vector<double> offs;
-    for (auto& [piece, evidence] : tubes_in(sample, radius)) {
+    for (auto& [piece, evidence] : tubes_in(std::move(sample), radius)) {
       if (!all_is_tube() && stands_upright(piece, up_)) {
         standing_.push_back(std::move(piece));
         continue;

@@ -21,9 +21,8 @@ struct StretchEvidence {
 
 /// How the scan goes on at the two sides of a tube, each as a part of 1.
 struct OutlineEvidence {
-  double edge = 0.0;  ///< just beside the tube, seen past it to what lies at least half a radius lower than its axis
-  double flat =
-      0.0;  ///< at the tube's flank, a surface in front of it by a part of a radius: less curved than the tube
+  double edge = 0.0;  ///< just beside the tube, seen past it to what lies over half a radius lower than its axis
+  double flat = 0.0;  ///< at its flank, a surface up to a radius in front of it, as of what is less curved
 };
 
 class OcclusionTest {
@@ -54,7 +53,7 @@ class OcclusionTest {
  private:
   /// Of a place beside the centreline as a scanner sees it, radii: to the right, and towards the scanner.
   using Place = Eigen::Vector2d;
-  /// A place's distance from the tube's surface that still counts as there is `tolerance` radii.
+  /// What was measured within `tolerance` radii of a place, in range, counts as surface.
   StretchEvidence evidence_at(const Vec3& center, const Vec3& direction, std::span<const Place> places,
                               double tolerance) const;
   /// At the surface, so many radii to the right.
