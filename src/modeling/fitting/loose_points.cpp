@@ -17,9 +17,9 @@ LoosePoints::LoosePoints(const FilteredCloud& cloud, const std::vector<Segment>&
       points_, {}, [&](const SurfacePoint& point) { return std::pair(strip_of(point.position), point.position.x()); });
 }
 
-int LoosePoints::strip_of(const Vec3& position) const { return static_cast<int>(std::floor(position.y() / reach_)); }
+double LoosePoints::strip_of(const Vec3& position) const { return std::floor(position.y() / reach_); }
 
-std::span<const SurfacePoint> LoosePoints::part_about(int strip, const Vec3& place) const {
+std::span<const SurfacePoint> LoosePoints::part_about(double strip, const Vec3& place) const {
   const auto key = [&](const SurfacePoint& point) { return std::pair(strip_of(point.position), point.position.x()); };
   const auto first = std::ranges::lower_bound(points_, std::pair(strip, place.x() - reach_), {}, key);
   const auto last = std::ranges::upper_bound(first, points_.end(), std::pair(strip, place.x() + reach_), {}, key);

@@ -19,14 +19,15 @@ class LoosePoints {
   /// Calls visit(point) for those within the reach of a place, and a few more.
   template <typename Visit>
   void for_each_about(const Vec3& place, const Visit& visit) const {
-    for (int strip = strip_of(place) - 1; strip <= strip_of(place) + 1; ++strip)
-      for (const SurfacePoint& point : part_about(strip, place)) visit(point);
+    for (const double beside : {-1.0, 0.0, 1.0})
+      for (const SurfacePoint& point : part_about(strip_of(place) + beside, place)) visit(point);
   }
 
  private:
-  int strip_of(const Vec3& position) const;
+  /// A whole number, as a double: that of an outlier far away is no int.
+  double strip_of(const Vec3& position) const;
   /// Of a strip, what lies as far along it as the place, to the reach.
-  std::span<const SurfacePoint> part_about(int strip, const Vec3& place) const;
+  std::span<const SurfacePoint> part_about(double strip, const Vec3& place) const;
 
   double reach_ = 0.0;
   std::vector<SurfacePoint> points_;  ///< by strips of y as wide as the reach, in order of x in each
