@@ -147,9 +147,13 @@ class PointsAbout {
         if ((position - place).squaredNorm() < squared_reach)
           gathered_.push_back({position, cloud_.normals[i].cast<double>()});
       }
+      const auto owned = std::ssize(gathered_);
       loose_.for_each_about(place, [&](const SurfacePoint& point) {
         if ((point.position - place).squaredNorm() < squared_reach) gathered_.push_back(point);
       });
+      // Sums of floats depend on the order, which must not depend on where strips begin.
+      std::ranges::stable_sort(gathered_.begin() + owned, gathered_.end(), {},
+                               [](const SurfacePoint& point) { return point.position.x(); });
     }
     return gathered_;
   }

@@ -65,6 +65,7 @@ struct PossibleClass {
   TubeClass sure;
   std::vector<UnsurePiece> unsure;
   double evidence = 0.0;     ///< nats, of its long pieces
+  bool has_ground = false;   ///< most of what is not flat is no tube
   double typical_off = 0.0;  ///< the median of their curvatures' errors, in units of 1 / radius
 };
 
@@ -155,14 +156,19 @@ class ClassFinder {
       // Where points are sparse, normals from as many as a known radius would not let in are too flat.
       if (reach(cloud, radius) < 0.9 * reach(cloud, round == 0 ? 0.0 : 2.0 * radius))
         cloud.normals = estimate_normals(projection_, cloud.points, reach(cloud, radius), 1, cloud.viewpoints);
-      const double refined = refined_radius(cloud, radius);
+      const double refined = refined_radius(cloud, radius, false);
       if (refined <= 0.0) return {};
       if (is_tried(refined, tried)) break;
       const bool is_settled = std::abs(refined - radius) < 0.05 * radius;
       radius = refined;
       if (is_settled) break;
     }
-    return pieces_of(cloud, radius);
+    PossibleClass found = pieces_of(cloud, radius);
+    // The longest pieces may have been ground.
+    const double refined = found.has_ground ? refined_radius(cloud, radius, true) : 0.0;
+    if (refined > 0.0 && std::abs(refined - radius) > 0.01 * radius && !is_tried(refined, tried))
+      found = pieces_of(cloud, refined);
+    return found;
   }
 
   bool is_believed(const PossibleClass& found) const {
@@ -181,11 +187,9 @@ class ClassFinder {
     return background_is_known_ ? std::move(sample) : without_sheets(sample, radius);
   }
 
-  bool has_no_outline(const PieceEvidence& evidence) const { return !background_is_known_ && goes_on_beside(evidence); }
-
-  /// As the longest pieces that are tubes show it; 0 where none is.
-  double refined_radius(const FilteredCloud& cloud, double radius) {
-    constexpr std::size_t kSegments = 24, kPieces = 5;
+  /// As the longest pieces that are tubes show it, `outlined`: of those with a tube's outline; 0 where none is.
+  double refined_radius(const FilteredCloud& cloud, double radius, bool outlined) {
+    const std::size_t kSegments = outlined ? 24 : 12, kPieces = 5;
     // A quarter of a radius apart, a stretch of tube still has some ten votes in a voxel of segment_by_votes.
     const FilteredCloud sample = without_ground(sample_of(cloud, radius / 4.0, radius), radius);
     auto segments = segment_by_votes(sample, radius);
@@ -209,19 +213,18 @@ class ClassFinder {
                                         viewpoint_of(sample, segment, projection_));
       return round_ones(piece ? std::vector{*piece} : std::vector<TubePiece>{});
     };
-    std::vector<TubePiece> outlined, others;
-    const auto add = [&](std::vector<ExaminedPiece> round) {
-      for (ExaminedPiece& found : round)
-        (has_no_outline(found.evidence) ? others : outlined).push_back(std::move(found.piece));
+    std::vector<TubePiece> pieces;
+    const auto add = [&](const std::vector<ExaminedPiece>& round) {
+      for (const ExaminedPiece& found : round)
+        if (!outlined || !goes_on_beside(found.evidence)) pieces.push_back(found.piece);
     };
-    for (std::size_t next = 0; next < segments.size() && outlined.size() < kPieces;) {
-      const std::size_t count = std::min(kPieces - outlined.size(), segments.size() - next);
+    for (std::size_t next = 0; next < segments.size() && pieces.size() < kPieces;) {
+      const std::size_t count = std::min(kPieces - pieces.size(), segments.size() - next);
       add(gather_in_parallel(count, [&](std::size_t k) { return longest_piece(segments[next + k]); }));
       next += count;
     }
     // A ring's surface is no one piece.
-    if (outlined.empty() && others.empty()) add(round_ones(fit_segments(sample, segments, projection_, radius)));
-    const std::vector<TubePiece>& pieces = outlined.empty() ? others : outlined;
+    if (pieces.empty()) add(round_ones(fit_segments(sample, segments, projection_, radius)));
     return pieces.empty() ? 0.0 : refine_radius(pieces, sample.points, radius);
   }
 
@@ -259,7 +262,7 @@ class ClassFinder {
   }
 
   /// Cloth, gravel and other rough ground is as round as a tube somewhere: what looks like one has to have a tube's outline there.
-  std::vector<ExaminedPiece> tubes_in(FilteredCloud sample, double radius) {
+  std::vector<ExaminedPiece> tubes_in(FilteredCloud sample, double radius, bool& has_ground) {
     const std::size_t sampled = sample.points.size();
     const FilteredCloud searched = without_ground(std::move(sample), radius);
     std::vector<TubePiece> found =
@@ -270,8 +273,10 @@ class ClassFinder {
       return std::vector<ExaminedPiece>{{std::move(found[k]), evidence}};
     });
     std::vector<ExaminedPiece> tubes = tubes_of(pieces, searched, radius, false);
-    if (!background_is_known_ && tube_part(tubes, sampled) < kMostlyTube)
-      tubes = tubes_of(pieces, searched, radius, true);
+    // Ground that a believed radius leaves is ground to the next ones, whatever looks like tubes of theirs.
+    has_ground = !background_is_known_ &&
+                 (tube_part(tubes, sampled) < kMostlyTube || (!possible_.empty() && possible_.front().has_ground));
+    if (has_ground) tubes = tubes_of(pieces, searched, radius, true);
     return tubes;
   }
 
@@ -282,7 +287,7 @@ class ClassFinder {
     PossibleClass found{.sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}};
     double information = 0.0;
     std::vector<double> offs;
-    for (auto& [piece, evidence] : tubes_in(std::move(sample), radius)) {
+    for (auto& [piece, evidence] : tubes_in(std::move(sample), radius, found.has_ground)) {
       if (!all_is_tube() && stands_upright(piece, up_)) {
         standing_.push_back(std::move(piece));
         continue;
