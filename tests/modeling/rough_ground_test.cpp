@@ -81,6 +81,16 @@ TEST(LoosePoints, AreAllThatNoSegmentHoldsWithinTheReach) {
   }
 }
 
+TEST(LoosePoints, AreNoneWithoutACloudOrFarAway) {
+  std::size_t found = 0;
+  LoosePoints().for_each_about(Vec3(0.1, 0.2, 0.3), [&](const SurfacePoint&) { ++found; });
+  FilteredCloud cloud;
+  cloud.points.push_back(cloud::Point::Zero());
+  cloud.normals.push_back(cloud::Point::UnitZ());
+  LoosePoints(cloud, {}, 1e-3).for_each_about(Vec3(0.0, 1e30, 0.0), [&](const SurfacePoint&) { ++found; });
+  EXPECT_EQ(found, 0u);
+}
+
 /// Of a piece along the x axis at the top of such ground, to so far across.
 PieceEvidence evidence_on(const std::function<double(double)>& height, double half_width) {
   const FilteredCloud cloud = ground([&](double, double y) { return height(y); });
