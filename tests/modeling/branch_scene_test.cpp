@@ -94,6 +94,9 @@ TEST(Branches, SegmentsOfTreesAreTakenApartAndThoseOfChainsAreNot) {
     std::size_t points = 0;
     for (const Stretch& stretch : stretches) points += stretch.segment.size();
     EXPECT_EQ(points, segments[0].size());
+    const Split split = split_off_longest({segments[0], VoteGraph(filtered, segments[0], kRadius)}, kRadius);
+    EXPECT_EQ(split.longest.segment, stretches[0].segment);
+    EXPECT_EQ(split.others.empty(), !is_tree);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "modeling/built_surface.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
@@ -40,9 +41,16 @@ struct Bridge {
   }
 };
 
+std::vector<TubePiece> pieces_of(
+    const Bridge& scene, const std::vector<Segment>& segments,
+    const std::function<void(std::vector<VoteCurve>&)>& leave_out = [](const auto&) {}) {
+  return find_centerline_pieces(scene.cloud, find_curves(scene.cloud, segments, kRadius), scene.view, kRadius,
+                                leave_out);
+}
+
 TEST(CenterlinePieces, AreTheTubesBetweenOcclusions) {
   const Bridge scene;
-  scene.expect_found(find_centerline_pieces(scene.cloud, segment_by_votes(scene.cloud, kRadius), scene.view, kRadius));
+  scene.expect_found(pieces_of(scene, segment_by_votes(scene.cloud, kRadius)));
 }
 
 TEST(CenterlinePieces, TheSecondRoundFindsWhatTheFirstWasNotGiven) {
@@ -50,7 +58,7 @@ TEST(CenterlinePieces, TheSecondRoundFindsWhatTheFirstWasNotGiven) {
   std::vector<Segment> segments = segment_by_votes(scene.cloud, kRadius);
   const auto is_upper = [&](const Segment& segment) { return scene.cloud.points[segment[0]].z() > 2.1f * kRadius; };
   ASSERT_EQ(std::erase_if(segments, is_upper), 1u);
-  const std::vector<TubePiece> pieces = find_centerline_pieces(scene.cloud, segments, scene.view, kRadius);
+  const std::vector<TubePiece> pieces = pieces_of(scene, segments);
   scene.expect_found(pieces);
   std::vector<int> holders(scene.cloud.points.size(), 0);  // the second round numbers the points anew
   for (const TubePiece& piece : pieces)
@@ -59,6 +67,17 @@ TEST(CenterlinePieces, TheSecondRoundFindsWhatTheFirstWasNotGiven) {
       EXPECT_LT(distance_to_polyline(scene.cloud.points[i].cast<double>(), piece.nodes), 1.5 * kRadius);
     }
   EXPECT_LE(*std::ranges::max_element(holders), 1);
+}
+
+TEST(CenterlinePieces, TheSecondRoundLeavesOutWhatItIsAskedTo) {
+  const Bridge scene;
+  std::size_t curves = 0;
+  const std::vector<TubePiece> pieces = pieces_of(scene, {}, [&](std::vector<VoteCurve>& further) {
+    curves = further.size();
+    further.clear();
+  });
+  EXPECT_GE(curves, 3u);
+  EXPECT_TRUE(pieces.empty());
 }
 
 }  // namespace

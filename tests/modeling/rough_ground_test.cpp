@@ -1,4 +1,6 @@
 /// Ground that is not flat, and what of it is taken for tube.
+#include "modeling/fitting/rough_ground.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -91,15 +93,19 @@ TEST(LoosePoints, AreNoneWithoutACloudOrFarAway) {
   EXPECT_EQ(found, 0u);
 }
 
+OcclusionTest occlusion_of(const FilteredCloud& cloud) {
+  const ModelingInput input{
+      .points = cloud.points, .world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 1}), .bin = {}};
+  return {input, view_from_above(), kSpacing, kRadius};
+}
+
 /// Of a piece along the x axis at the top of such ground, to so far across.
 PieceEvidence evidence_on(const std::function<double(double)>& height, double half_width) {
   const FilteredCloud cloud = ground([&](double, double y) { return height(y); });
   TubePiece piece{.nodes = {{-0.09, 0, 0}, {0.09, 0, 0}}, .radius = kRadius, .points = {}};
   for (std::uint32_t i = 0; i < cloud.points.size(); ++i)
     if (std::abs(cloud.points[i].y()) < half_width) piece.points.push_back(i);
-  const ModelingInput input{
-      .points = cloud.points, .world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 1}), .bin = {}};
-  return examine_piece(piece, cloud.points, OcclusionTest(input, view_from_above(), kSpacing, kRadius));
+  return examine_piece(piece, cloud.points, occlusion_of(cloud));
 }
 
 double round(double y) { return std::sqrt(std::max(kRadius * kRadius - y * y, 0.0)); }
@@ -108,7 +114,7 @@ TEST(Outline, OfATubeOnATableIsAnEdge) {
   const PieceEvidence tube = evidence_on([](double y) { return std::abs(y) < kRadius ? round(y) : -kRadius; }, kRadius);
   EXPECT_GT(tube.outline.edge, 0.95);
   EXPECT_LT(tube.outline.flat, 0.05);
-  EXPECT_FALSE(goes_on_beside(tube));
+  EXPECT_FALSE(goes_on_beside(tube.outline));
 }
 
 /// A ripple as curved at its crest as a tube.
@@ -118,7 +124,7 @@ TEST(Outline, OfARippleIsNone) {
       evidence_on([](double y) { return kRadius - kWave * kWave / kRadius * (1.0 - std::cos(y / kWave)); }, kWave);
   EXPECT_LT(ripple.outline.edge, 0.05);
   EXPECT_GT(ripple.outline.flat, 0.95);
-  EXPECT_TRUE(goes_on_beside(ripple));
+  EXPECT_TRUE(goes_on_beside(ripple.outline));
 }
 
 /// Others in a row hide both sides, and nothing of the flanks.
@@ -126,7 +132,41 @@ TEST(Outline, OfATubeInARowIsUnknown) {
   const PieceEvidence tube = evidence_on([](double y) { return round(std::remainder(y, 2.0 * kRadius)); }, kRadius);
   EXPECT_LT(tube.outline.edge, 0.05);
   EXPECT_LT(tube.outline.flat, 0.05);
-  EXPECT_FALSE(goes_on_beside(tube));
+  EXPECT_FALSE(goes_on_beside(tube.outline));
+}
+
+/// Of `count` points, all on one.
+VoteCurve curve_of(std::size_t count) {
+  return {.points = Segment(count, 0), .surface = {}, .votes = {}, .samples = {}};
+}
+
+TEST(RoughGround, IsWhatHasManyPointsMostOfThemOnNoTubesCurve) {
+  const std::vector<VoteCurve> curves = {curve_of(20'000), curve_of(10'000), curve_of(15'000)};
+  EXPECT_TRUE(is_rough(curves, {true, false, true}, 60'000));
+  EXPECT_FALSE(is_rough(curves, {true, false, false}, 60'000));
+  EXPECT_FALSE(is_rough(curves, {true, false, true}, 45'000));  // as few as a pile of rods has
+  EXPECT_TRUE(is_rough({}, {}, 60'000));
+}
+
+/// A ripple of the ground along the x axis, and a tube on it that lies across.
+TEST(RoughGround, LosesItsCurvesAndKeepsThoseOfTubes) {
+  constexpr double kWave = 0.3 * kRadius, kTubeAt = 0.05;
+  const FilteredCloud cloud = ground([](double x, double y) {
+    const double ripple = kWave * kWave / kRadius * (std::cos(y / kWave) - 1.0);
+    return std::abs(x - kTubeAt) < kRadius ? kRadius + round(x - kTubeAt) : ripple;
+  });
+  const auto along = [](const Vec3& from, const Vec3& to) {
+    VoteCurve curve = curve_of(1);
+    for (double t = 0.0; t < 1.0; t += 0.05) curve.samples.push_back(from + t * (to - from));
+    return curve;
+  };
+  std::vector<VoteCurve> curves = {along({-0.1, 0, -kRadius}, {0.02, 0, -kRadius}),
+                                   along({kTubeAt, -0.1, kRadius}, {kTubeAt, 0.1, kRadius})};
+  const std::vector<char> is_ground = find_ground(curves, kRadius, occlusion_of(cloud));
+  EXPECT_EQ(is_ground, (std::vector<char>{true, false}));
+  drop_ground(curves, is_ground);
+  ASSERT_EQ(curves.size(), 1u);
+  EXPECT_NEAR(curves[0].samples.front().x(), kTubeAt, 1e-12);
 }
 
 /// What a scanner at the origin measures that looks along z: two tubes that cross a metre away, over crumpled ground.

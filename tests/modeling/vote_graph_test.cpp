@@ -70,5 +70,32 @@ TEST(VoteGraph, TheLongestWayLeadsFromEndToEndWithoutStrays) {
   EXPECT_LE(longest_step(way), kRadius / 2.0);
 }
 
+TEST(VoteGraph, PartsAreWhatTheirPointsAloneWouldMake) {
+  const FilteredCloud cloud = votes_about({{0, 0, 0}, {0.08, 0, 0}, {0.08, 0.06, 0}}, 0.004);
+  const VoteGraph whole(cloud, cloud.source, kRadius);
+  Random random(9);
+  constexpr std::size_t kParts = 3;
+  std::vector<std::uint32_t> part_of_voxel;
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    part_of_voxel.push_back(whole.mean(i).x() < 0.03f ? 0 : random.uniform(0.0, 1.0) < 0.5 ? 1 : 2);
+  const std::vector<VoteGraph> parts = whole.divided(part_of_voxel, kParts);
+  ASSERT_EQ(parts.size(), kParts);
+  for (std::uint32_t part = 0; part < kParts; ++part) {
+    Segment points;
+    for (std::size_t k = 0; k < cloud.source.size(); ++k)
+      if (part_of_voxel[whole.voxel_of(k)] == part) points.push_back(cloud.source[k]);
+    const VoteGraph expected(cloud, points, kRadius);
+    ASSERT_EQ(parts[part].size(), expected.size());
+    EXPECT_EQ(parts[part].end(), expected.end());
+    EXPECT_EQ(parts[part].distances_from_end(), expected.distances_from_end());
+    for (std::uint32_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(parts[part].mean(i), expected.mean(i));
+      EXPECT_EQ(parts[part].count(i), expected.count(i));
+      EXPECT_TRUE(std::ranges::equal(parts[part].linked(i), expected.linked(i)));
+    }
+    for (std::size_t k = 0; k < points.size(); ++k) EXPECT_EQ(parts[part].voxel_of(k), expected.voxel_of(k));
+  }
+}
+
 }  // namespace
 }  // namespace tubebin::modeling

@@ -1,7 +1,12 @@
 #include "modeling/fitting/branch_splitting.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
+#include <utility>
+
+#include "modeling/fitting/vote_voxels.hpp"
+#include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -51,51 +56,70 @@ std::optional<double> cut_of(const VoteGraph& graph, const std::vector<std::uint
   return length > kLongest * radius ? std::optional(length / 2.0) : std::nullopt;
 }
 
-/// The segment's parts nearer to the graph's end than `cut` metres, and the others.
-std::vector<Segment> cut_across(const VoteGraph& graph, const Segment& segment, double cut) {
-  std::vector<Segment> parts(2);
-  for (std::size_t k = 0; k < segment.size(); ++k)
-    parts[graph.distances_from_end()[graph.voxel_of(k)] < cut ? 0 : 1].push_back(segment[k]);
-  return parts;
+std::vector<Stretch> divided(const Stretch& whole, const std::vector<std::uint32_t>& part_of_voxel, std::size_t parts) {
+  std::vector<Stretch> stretches;
+  for (VoteGraph& graph : whole.graph.divided(part_of_voxel, parts))
+    stretches.push_back({.segment = {}, .graph = std::move(graph)});
+  for (std::size_t k = 0; k < whole.segment.size(); ++k)
+    stretches[part_of_voxel[whole.graph.voxel_of(k)]].segment.push_back(whole.segment[k]);
+  return stretches;
+}
+
+/// The part nearer to the graph's end than `cut` metres, and the other.
+std::vector<Stretch> cut_across(const Stretch& whole, double cut) {
+  std::vector<std::uint32_t> part;
+  for (const double distance : whole.graph.distances_from_end()) part.push_back(distance < cut ? 0 : 1);
+  return divided(whole, part, 2);
+}
+
+/// The part along the way, and those off it that are long enough to be tubes.
+std::vector<Stretch> split_off(const Stretch& whole, const std::vector<std::uint32_t>& way, double radius) {
+  // A flat end's votes lie up to a radius beside the line, and scatter by half as much. A part that reaches two radii
+  // farther is longer than it is wide.
+  const double reach = 1.5 * radius, least = 3.5 * radius;
+  const std::vector<double> distance = whole.graph.distances_from(way);
+  std::vector<std::uint32_t> part_of_voxel(whole.graph.size(), 0);
+  std::uint32_t parts = 1;
+  for (const auto& part : parts_off(whole.graph, distance, reach)) {
+    double farthest = 0.0;
+    for (const std::uint32_t i : part) farthest = std::max(farthest, distance[i]);
+    if (farthest < least) continue;
+    for (const std::uint32_t i : part) part_of_voxel[i] = parts;
+    ++parts;
+  }
+  return parts == 1 ? std::vector<Stretch>{} : divided(whole, part_of_voxel, parts);
+}
+
+std::vector<Stretch> all_stretches(Stretch whole, double radius) {
+  Split split = split_off_longest(std::move(whole), radius);
+  std::vector<Stretch> stretches;
+  stretches.push_back(std::move(split.longest));
+  std::ranges::move(
+      gather_in_parallel(split.others.size(),
+                         [&](std::size_t k) { return all_stretches(std::move(split.others[k]), radius); }),
+      std::back_inserter(stretches));
+  return stretches;
 }
 
 }  // namespace
 
-std::vector<Stretch> split_branches(const FilteredCloud& cloud, const Segment& segment, double radius) {
-  VoteGraph graph(cloud, segment, radius);
-  const std::vector<std::uint32_t> way = graph.longest_way();
-  if (const auto cut = cut_of(graph, way, radius)) {
-    std::vector<Stretch> stretches;
-    for (const Segment& part : cut_across(graph, segment, *cut))
-      for (Stretch& stretch : split_branches(cloud, part, radius)) stretches.push_back(std::move(stretch));
-    return stretches;
+Split split_off_longest(Stretch whole, double radius) {
+  const std::vector<std::uint32_t> way = whole.graph.longest_way();
+  if (const auto cut = cut_of(whole.graph, way, radius)) {
+    std::vector<Stretch> parts = cut_across(whole, *cut);
+    Split split = split_off_longest(std::move(parts[0]), radius);
+    split.others.push_back(std::move(parts[1]));
+    return split;
   }
-  // A flat end's votes lie up to a radius beside the line, and scatter by half as much. A part that reaches two radii
-  // farther is longer than it is wide.
-  const double reach = 1.5 * radius, least = 3.5 * radius;
-  const std::vector<double> distance = graph.distances_from(way);
-  std::vector<std::uint32_t> segment_of_voxel(graph.size(), 0);
-  std::uint32_t segments = 1;
-  for (const auto& part : parts_off(graph, distance, reach)) {
-    double farthest = 0.0;
-    for (const std::uint32_t i : part) farthest = std::max(farthest, distance[i]);
-    if (farthest < least) continue;
-    for (const std::uint32_t i : part) segment_of_voxel[i] = segments;
-    ++segments;
-  }
-  std::vector<Stretch> result;
-  if (segments == 1) {
-    result.push_back({segment, std::move(graph)});
-    return result;
-  }
+  std::vector<Stretch> parts = split_off(whole, way, radius);
+  if (parts.empty()) return {.longest = std::move(whole), .others = {}};
+  Split split{.longest = std::move(parts.front()), .others = {}};
+  std::move(parts.begin() + 1, parts.end(), std::back_inserter(split.others));
+  return split;
+}
 
-  std::vector<Segment> split(segments);
-  for (std::size_t k = 0; k < segment.size(); ++k) split[segment_of_voxel[graph.voxel_of(k)]].push_back(segment[k]);
-  VoteGraph longest(cloud, split.front(), radius);
-  result.push_back({std::move(split.front()), std::move(longest)});
-  for (std::size_t s = 1; s < split.size(); ++s)
-    for (Stretch& part : split_branches(cloud, split[s], radius)) result.push_back(std::move(part));
-  return result;
+std::vector<Stretch> split_branches(const FilteredCloud& cloud, const Segment& segment, double radius) {
+  return all_stretches({segment, VoteGraph(cloud, segment, radius)}, radius);
 }
 
 }  // namespace tubebin::modeling

@@ -110,6 +110,10 @@ void drop_sharp_ends(std::vector<Vec3>& nodes, double radius) {
   }
 }
 
+bool is_short(const VoteCurve& votes, double radius) {
+  return votes.samples.size() < 2 || polyline_length(votes.samples) < 2.0 * radius;
+}
+
 bool turns_back(const std::vector<Vec3>& nodes, std::size_t k) {
   constexpr double kCosine = -0.98;  // of 169 degrees; paths of trees that fork narrowly turn nearly as much
   return (nodes[k] - nodes[k - 1]).normalized().dot((nodes[k + 1] - nodes[k]).normalized()) < kCosine;
@@ -132,19 +136,22 @@ double bend_tolerance(std::span<const VoteCurve> curves, double radius) {
   return std::clamp(4.0 * roughness(curves), radius / 20.0, radius / 9.0);
 }
 
+std::vector<Vec3> first_nodes(const VoteCurve& votes, double tolerance, double radius) {
+  if (is_short(votes, radius)) return axis_from_normals(votes.votes, radius);
+  std::vector<Vec3> nodes = {votes.samples.front()};
+  // A bend shows as an offset from the chord.
+  simplify(votes.samples, 0, votes.samples.size() - 1, tolerance, nodes);
+  return nodes;
+}
+
 std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const VoteCurve& votes, double tolerance,
                                         const LoosePoints& loose, double radius, const Vec3& viewpoint) {
-  const auto& [segment, surface, all_votes, curve] = votes;
+  const Segment& segment = votes.points;
+  const std::vector<SurfacePoint>& surface = votes.surface;
   TubePiece piece{.nodes = {}, .radius = radius, .points = segment};
-  if (curve.size() < 2 || polyline_length(curve) < 2.0 * radius) {
-    piece.nodes = axis_of_flat_end(surface, radius);
-    if (!piece.nodes.empty()) return piece;
-    piece.nodes = axis_from_normals(all_votes, radius);
-  } else {
-    piece.nodes = {curve.front()};
-    // A bend shows as an offset from the chord.
-    simplify(curve, 0, curve.size() - 1, tolerance, piece.nodes);
-  }
+  if (is_short(votes, radius)) piece.nodes = axis_of_flat_end(surface, radius);
+  if (!piece.nodes.empty()) return piece;
+  piece.nodes = first_nodes(votes, tolerance, radius);
   if (fit_surface(piece.nodes, surface, radius).sigma > radius / 4.0) return std::nullopt;
 
   grow_end(piece.nodes, cloud, segment, loose, radius, viewpoint);

@@ -15,6 +15,9 @@ namespace tubebin::modeling {
 /// of what scatters the scene's curves.
 double bend_tolerance(std::span<const VoteCurve> curves, double radius);
 
+/// Nodes of cylinders along the curve, before points are fitted: it is cut where it bends by more than the `tolerance` (metres).
+std::vector<Vec3> first_nodes(const VoteCurve& votes, double tolerance, double radius);
+
 /// Fits consecutive cylinders of the known radius to a stretch: its curve is cut where it bends by more than the `tolerance`
 /// (metres), the nodes minimize the points' distances to the surface, and the ends grow as far as points show them, also
 /// those `loose` ones that no segment holds. Nothing results from votes that are no tube's.

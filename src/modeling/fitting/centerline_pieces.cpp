@@ -36,16 +36,20 @@ FilteredCloud still_unexplained(const FilteredCloud& rest, const FilteredCloud& 
 
 }  // namespace
 
-std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vector<Segment>& segments,
-                                    const ViewProjection& projection, double radius) {
-  const std::vector<VoteCurve> curves = gather_in_parallel(segments.size(), [&](std::size_t k) {
-    std::vector<VoteCurve> of_segment;
-    for (Stretch& stretch : split_branches(cloud, segments[k], radius))
-      of_segment.push_back(find_vote_curve(cloud, std::move(stretch), radius));
-    return of_segment;
+SegmentCurves find_curves(const FilteredCloud& cloud, std::vector<Segment> segments, double radius) {
+  std::vector<Stretch> stretches =
+      gather_in_parallel(segments.size(), [&](std::size_t k) { return split_branches(cloud, segments[k], radius); });
+  std::vector<VoteCurve> curves = gather_in_parallel(stretches.size(), [&](std::size_t k) {
+    return std::vector{find_vote_curve(cloud, std::move(stretches[k]), radius)};
   });
+  return {.segments = std::move(segments), .curves = std::move(curves)};
+}
+
+std::vector<TubePiece> fit_curves(const FilteredCloud& cloud, const SegmentCurves& found,
+                                  const ViewProjection& projection, double radius) {
+  const std::vector<VoteCurve>& curves = found.curves;
   const double tolerance = bend_tolerance(curves, radius);
-  const LoosePoints loose(cloud, segments, kGrowthReach * radius);
+  const LoosePoints loose(cloud, found.segments, kGrowthReach * radius);
   return gather_in_parallel(curves.size(), [&](std::size_t k) {
     const Vec3 viewpoint = viewpoint_of(cloud, curves[k].points, projection);
     auto piece = fit_centerline(cloud, curves[k], tolerance, loose, radius, viewpoint);
@@ -53,16 +57,19 @@ std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vecto
   });
 }
 
-std::vector<TubePiece> find_centerline_pieces(const FilteredCloud& cloud, const std::vector<Segment>& segments,
-                                              const ViewProjection& projection, double radius) {
-  std::vector<TubePiece> pieces = fit_segments(cloud, segments, projection, radius);
+std::vector<TubePiece> find_centerline_pieces(const FilteredCloud& cloud, const SegmentCurves& found,
+                                              const ViewProjection& projection, double radius,
+                                              const std::function<void(std::vector<VoteCurve>&)>& leave_out) {
+  std::vector<TubePiece> pieces = fit_curves(cloud, found, projection, radius);
   drop_explained_pieces(pieces, cloud.points, cloud.spacing);
 
   FilteredCloud rest = part_of(cloud, unexplained_points(cloud.points, pieces, cloud.spacing), projection, radius);
   fit_flat_ends(pieces, cloud, rest);
 
   rest = still_unexplained(rest, cloud, pieces, projection, radius);
-  for (TubePiece& piece : fit_segments(rest, segment_by_votes(rest, radius), projection, radius)) {
+  SegmentCurves further = find_curves(rest, segment_by_votes(rest, radius), radius);
+  leave_out(further.curves);
+  for (TubePiece& piece : fit_curves(rest, further, projection, radius)) {
     for (std::uint32_t& i : piece.points) i = rest.source[i];
     pieces.push_back(std::move(piece));
   }

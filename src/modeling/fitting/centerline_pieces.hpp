@@ -3,19 +3,29 @@
 /// second's.
 #pragma once
 
+#include <functional>
 #include <vector>
 
+#include "modeling/fitting/vote_curve.hpp"
 #include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/tube_model.hpp"
 
 namespace tubebin::modeling {
 
-/// The first round's.
-std::vector<TubePiece> fit_segments(const FilteredCloud& cloud, const std::vector<Segment>& segments,
-                                    const ViewProjection& projection, double radius);
+struct SegmentCurves {
+  std::vector<Segment> segments;
+  std::vector<VoteCurve> curves;  ///< of all their stretches, or of those that are to be fitted
+};
 
-/// Both rounds'.
-std::vector<TubePiece> find_centerline_pieces(const FilteredCloud& cloud, const std::vector<Segment>& segments,
-                                              const ViewProjection& projection, double radius);
+SegmentCurves find_curves(const FilteredCloud& cloud, std::vector<Segment> segments, double radius);
+
+/// One round's.
+std::vector<TubePiece> fit_curves(const FilteredCloud& cloud, const SegmentCurves& found,
+                                  const ViewProjection& projection, double radius);
+
+/// Both rounds', the second's of those curves that `leave_out` leaves.
+std::vector<TubePiece> find_centerline_pieces(const FilteredCloud& cloud, const SegmentCurves& found,
+                                              const ViewProjection& projection, double radius,
+                                              const std::function<void(std::vector<VoteCurve>&)>& leave_out);
 
 }  // namespace tubebin::modeling

@@ -78,23 +78,26 @@ struct RadiusChange {
   }
 };
 
-/// How the visible sides look, to 53 degrees left and right of the top as the viewpoint has it, and the outline.
-void look_at_sides(const TubePiece& piece, const OcclusionTest& occlusion, PieceEvidence& evidence) {
-  double samples = 0.0;
-  for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
-    const Vec3 along = piece.nodes[k + 1] - piece.nodes[k];
-    const int steps = static_cast<int>(along.norm() / piece.radius) + 1;
-    for (int step = 0; step < steps; ++step) {
-      const Vec3 center = piece.nodes[k] + (step + 0.5) / steps * along, direction = along.normalized();
-      const StretchEvidence sides = occlusion.sides(center, direction);
-      const OutlineEvidence outline = occlusion.outline(center, direction);
-      evidence.surface += sides.surface, evidence.empty += sides.empty;
-      evidence.outline.edge += outline.edge, evidence.outline.flat += outline.flat;
-      samples += 1.0;
-    }
+/// Calls visit(center, direction) for places of the centreline a radius apart or less; returns how many they are.
+template <typename Visit>
+double visit_along(std::span<const Vec3> nodes, double radius, const Visit& visit) {
+  double places = 0.0;
+  for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+    const Vec3 along = nodes[k + 1] - nodes[k];
+    const int steps = static_cast<int>(along.norm() / radius) + 1;
+    for (int step = 0; step < steps; ++step) visit(nodes[k] + (step + 0.5) / steps * along, along.normalized());
+    places += steps;
   }
-  for (double* part : {&evidence.surface, &evidence.empty, &evidence.outline.edge, &evidence.outline.flat})
-    *part /= std::max(samples, 1.0);
+  return places;
+}
+
+/// How the visible sides look, to 53 degrees left and right of the top as the viewpoint has it.
+void look_at_sides(const TubePiece& piece, const OcclusionTest& occlusion, PieceEvidence& evidence) {
+  const double places = visit_along(piece.nodes, piece.radius, [&](const Vec3& center, const Vec3& direction) {
+    const StretchEvidence sides = occlusion.sides(center, direction);
+    evidence.surface += sides.surface, evidence.empty += sides.empty;
+  });
+  evidence.surface /= std::max(places, 1.0), evidence.empty /= std::max(places, 1.0);
 }
 
 /// A tube's own solid keeps places of its centreline two radii apart, but for those less than the tightest half turn apart
@@ -127,6 +130,16 @@ double coiled_part(const TubePiece& piece) {
 
 }  // namespace
 
+OutlineEvidence outline_along(std::span<const Vec3> nodes, double radius, const OcclusionTest& occlusion) {
+  OutlineEvidence mean;
+  const double places = visit_along(nodes, radius, [&](const Vec3& center, const Vec3& direction) {
+    const OutlineEvidence outline = occlusion.outline(center, direction);
+    mean.edge += outline.edge, mean.flat += outline.flat;
+  });
+  mean.edge /= std::max(places, 1.0), mean.flat /= std::max(places, 1.0);
+  return mean;
+}
+
 PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point> points,
                             const OcclusionTest& occlusion) {
   PieceEvidence evidence;
@@ -145,6 +158,7 @@ PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point
     evidence.curvature_error = 1.0;
   }
   look_at_sides(piece, occlusion, evidence);
+  evidence.outline = outline_along(piece.nodes, piece.radius, occlusion);
   evidence.coiled = coiled_part(piece);
   return evidence;
 }
@@ -153,9 +167,9 @@ bool has_other_radius(const PieceEvidence& evidence) {
   return std::abs(evidence.curvature - 1.0) > 0.15 + 4.0 * evidence.curvature_error;
 }
 
-bool goes_on_beside(const PieceEvidence& evidence) {
+bool goes_on_beside(const OutlineEvidence& outline) {
   constexpr double kChance = 0.1;  // of flanks that noise puts in front
-  return evidence.outline.flat > std::max(evidence.outline.edge, kChance);
+  return outline.flat > std::max(outline.edge, kChance);
 }
 
 bool is_tube(const PieceEvidence& evidence, double radius, double noise) {

@@ -19,6 +19,9 @@ struct PieceEvidence {
   double coiled = 0.0;           ///< part of its length within a radius of another place of its centreline
 };
 
+/// On average along a centreline.
+OutlineEvidence outline_along(std::span<const Vec3> nodes, double radius, const OcclusionTest& occlusion);
+
 PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point> points,
                             const OcclusionTest& occlusion);
 
@@ -27,7 +30,7 @@ bool has_other_radius(const PieceEvidence& evidence);
 
 /// Whether the surface goes on beyond the tube's outline more than it ends there, as the fold of a cloth or a wave of rough ground
 /// does. So does a tube in a close row that is seen obliquely.
-bool goes_on_beside(const PieceEvidence& evidence);
+bool goes_on_beside(const OutlineEvidence& outline);
 
 /// Whether a tube explains the evidence better than any flat strip or chance: curved like a tube of this radius, as far
 /// as the points can tell, with points on its surface and no sides that the scanner saw through.

@@ -12,6 +12,7 @@
 #include "modeling/fitting/centerline_segmentation.hpp"
 #include "modeling/fitting/piece_cleaning.hpp"
 #include "modeling/fitting/piece_evidence.hpp"
+#include "modeling/fitting/rough_ground.hpp"
 #include "modeling/fitting/tube_stretches.hpp"
 #include "modeling/fitting/vote_sheets.hpp"
 #include "modeling/input/normals.hpp"
@@ -27,8 +28,7 @@ constexpr std::size_t kMostClasses = 4, kMostTries = 8;
 /// So many pieces are joined in a second or two; a pile of a hundred tubes has some five hundred.
 constexpr std::size_t kMostPieces = 1500;
 
-/// A hundred tubes, forty radii long and seen from end to end, have as many a sixth of a radius apart. Where the points that
-/// were looked through for the radii so far are more, no further radius is looked for.
+/// A hundred tubes, forty radii long and seen from end to end, have as many a sixth of a radius apart.
 constexpr std::size_t kMostPoints = 300'000;
 
 /// In nats, of a radius' long pieces, which then know it to 1 %. Edges and rims seem round here and there, and of no one
@@ -36,9 +36,6 @@ constexpr std::size_t kMostPoints = 300'000;
 constexpr double kEnoughEvidence = 5000.0;
 /// And of a further radius as a part of the first one's: where tubes branch or touch, some surface is as round as a thicker tube.
 constexpr double kFurtherShare = 0.01;
-
-/// Of what is not flat, the part on tubes and what looks like them: beside a bin or on a table more, on rough ground less.
-constexpr double kMostlyTube = 0.4;
 
 /// In units of 1 / radius: so far off bends and joints put a tube's curvature.
 constexpr double kSureOff = 0.05;
@@ -60,12 +57,19 @@ struct UnsurePiece {
   double off = 0.0;  ///< curvature, in units of 1 / radius
 };
 
+/// What is looked through for tubes of a radius, and where their centrelines may be.
+struct Search {
+  FilteredCloud sample;
+  SegmentCurves curves;
+  bool has_ground = false;  ///< that is rough, and whose curves were left out
+};
+
 /// What was found of a radius, before others are known.
 struct PossibleClass {
   TubeClass sure;
   std::vector<UnsurePiece> unsure;
   double evidence = 0.0;     ///< nats, of its long pieces
-  bool has_ground = false;   ///< most of what is not flat is no tube
+  bool has_ground = false;   ///< that is rough
   double typical_off = 0.0;  ///< the median of their curvatures' errors, in units of 1 / radius
 };
 
@@ -101,7 +105,7 @@ class ClassFinder {
 
   TubeClasses find_told(const std::vector<double>& radii) {
     for (const double radius : radii) {
-      possible_.push_back(pieces_of(left(), radius));
+      possible_.push_back(pieces_of(search(left(), radius), radius));
       if (radii.size() > 1) set_aside(possible_.back().sure.pieces);
     }
     return {.classes = settled(possible_), .round = {}};
@@ -113,7 +117,8 @@ class ClassFinder {
     const std::size_t enough = cloud_.points.size() / 100;
     for (std::size_t k = 0; k < kMostTries && possible_.size() < kMostClasses; ++k) {
       if (rest_ && rest_->points.size() < enough) break;
-      if (!possible_.empty() && sampled_ > kMostPoints) break;
+      // Rough ground shows all radii.
+      if (!possible_.empty() && possible_.front().has_ground) break;
       const double seen = likeliest_radius(left(), tried, enough);
       if (seen <= 0.0) break;
       PossibleClass found = refined_class(left(), seen, tried);
@@ -156,19 +161,21 @@ class ClassFinder {
       // Where points are sparse, normals from as many as a known radius would not let in are too flat.
       if (reach(cloud, radius) < 0.9 * reach(cloud, round == 0 ? 0.0 : 2.0 * radius))
         cloud.normals = estimate_normals(projection_, cloud.points, reach(cloud, radius), 1, cloud.viewpoints);
-      const double refined = refined_radius(cloud, radius, false);
+      const double refined = refined_radius(cloud, radius);
       if (refined <= 0.0) return {};
       if (is_tried(refined, tried)) break;
       const bool is_settled = std::abs(refined - radius) < 0.05 * radius;
       radius = refined;
       if (is_settled) break;
     }
-    PossibleClass found = pieces_of(cloud, radius);
-    // The longest pieces may have been ground.
-    const double refined = found.has_ground ? refined_radius(cloud, radius, true) : 0.0;
-    if (refined > 0.0 && std::abs(refined - radius) > 0.01 * radius && !is_tried(refined, tried))
-      found = pieces_of(cloud, refined);
-    return found;
+    Search found = search(cloud, radius);
+    if (found.has_ground) {
+      // The longest pieces may have been ground, and the radius as well.
+      const double own = radius_by_outlined(found, radius);
+      if (own <= 0.0) return {};
+      if (std::abs(own - radius) > 0.01 * radius && !is_tried(own, tried)) found = search(cloud, radius = own);
+    }
+    return pieces_of(std::move(found), radius);
   }
 
   bool is_believed(const PossibleClass& found) const {
@@ -187,107 +194,118 @@ class ClassFinder {
     return background_is_known_ ? std::move(sample) : without_sheets(sample, radius);
   }
 
-  /// As the longest pieces that are tubes show it, `outlined`: of those with a tube's outline; 0 where none is.
-  double refined_radius(const FilteredCloud& cloud, double radius, bool outlined) {
-    const std::size_t kSegments = outlined ? 24 : 12, kPieces = 5;
+  static std::vector<TubePiece> round_ones(std::vector<TubePiece> pieces, const FilteredCloud& sample,
+                                           const OcclusionTest& occlusion) {
+    std::erase_if(pieces, [&](const TubePiece& piece) {
+      const PieceEvidence evidence = examine_piece(piece, sample.points, occlusion);
+      return std::abs(evidence.curvature - 1.0) > 0.4 || evidence.empty > 0.3;
+    });
+    return pieces;
+  }
+
+  /// Of the pieces along curve_of(0) to curve_of(count - 1), longest first, as many that are round as a radius needs.
+  std::vector<TubePiece> longest_round(const FilteredCloud& sample, std::size_t count, double radius,
+                                       const std::function<VoteCurve(std::size_t)>& curve_of) const {
+    constexpr std::size_t kEnough = 5;
+    const OcclusionTest occlusion = occlusion_.with_radius(radius);
+    const auto round_piece = [&](std::size_t k) {
+      const VoteCurve curve = curve_of(k);
+      const Vec3 viewpoint = viewpoint_of(sample, curve.points, projection_);
+      // Bends that are cut would make the radius too small.
+      const auto piece = fit_centerline(sample, curve, bend_tolerance({}, radius), {}, radius, viewpoint);
+      return round_ones(piece ? std::vector{*piece} : std::vector<TubePiece>{}, sample, occlusion);
+    };
+    std::vector<TubePiece> pieces;
+    for (std::size_t next = 0; next < count && pieces.size() < kEnough;) {
+      const std::size_t part = std::min(kEnough - pieces.size(), count - next);
+      std::ranges::move(gather_in_parallel(part, [&](std::size_t k) { return round_piece(next + k); }),
+                        std::back_inserter(pieces));
+      next += part;
+    }
+    return pieces;
+  }
+
+  /// As the longest pieces that are tubes show it; 0 where none is.
+  double refined_radius(const FilteredCloud& cloud, double radius) const {
+    constexpr std::size_t kLongest = 12;
     // A quarter of a radius apart, a stretch of tube still has some ten votes in a voxel of segment_by_votes.
     const FilteredCloud sample = without_ground(sample_of(cloud, radius / 4.0, radius), radius);
     auto segments = segment_by_votes(sample, radius);
     std::ranges::sort(segments, [](const Segment& a, const Segment& b) { return a.size() > b.size(); });
-    if (segments.size() > kSegments) segments.resize(kSegments);
-    const OcclusionTest occlusion = occlusion_.with_radius(radius);
-    const auto round_ones = [&](std::vector<TubePiece> pieces) {
-      std::vector<ExaminedPiece> round;
-      for (TubePiece& piece : pieces) {
-        const PieceEvidence evidence = examine_piece(piece, sample.points, occlusion);
-        if (std::abs(evidence.curvature - 1.0) <= 0.4 && evidence.empty <= 0.3)
-          round.push_back({std::move(piece), evidence});
-      }
-      return round;
-    };
-    const auto longest_piece = [&](const Segment& segment) {
-      // Bends that are cut would make the radius too small.
-      const VoteCurve curve =
-          find_vote_curve(sample, std::move(split_branches(sample, segment, radius).front()), radius);
-      const auto piece = fit_centerline(sample, curve, bend_tolerance({}, radius), {}, radius,
-                                        viewpoint_of(sample, segment, projection_));
-      return round_ones(piece ? std::vector{*piece} : std::vector<TubePiece>{});
-    };
-    std::vector<TubePiece> pieces;
-    const auto add = [&](const std::vector<ExaminedPiece>& round) {
-      for (const ExaminedPiece& found : round)
-        if (!outlined || !goes_on_beside(found.evidence)) pieces.push_back(found.piece);
-    };
-    for (std::size_t next = 0; next < segments.size() && pieces.size() < kPieces;) {
-      const std::size_t count = std::min(kPieces - pieces.size(), segments.size() - next);
-      add(gather_in_parallel(count, [&](std::size_t k) { return longest_piece(segments[next + k]); }));
-      next += count;
-    }
+    if (segments.size() > kLongest) segments.resize(kLongest);
+    std::vector<TubePiece> pieces = longest_round(sample, segments.size(), radius, [&](std::size_t k) {
+      Split split = split_off_longest({segments[k], VoteGraph(sample, segments[k], radius)}, radius);
+      return find_vote_curve(sample, std::move(split.longest), radius);
+    });
     // A ring's surface is no one piece.
-    if (pieces.empty()) add(round_ones(fit_segments(sample, segments, projection_, radius)));
+    if (pieces.empty())
+      pieces = round_ones(fit_curves(sample, find_curves(sample, segments, radius), projection_, radius), sample,
+                          occlusion_.with_radius(radius));
     return pieces.empty() ? 0.0 : refine_radius(pieces, sample.points, radius);
+  }
+
+  /// As the longest pieces that have a tube's outline show it; 0 where none that is round is long.
+  double radius_by_outlined(const Search& search, double radius) const {
+    constexpr std::size_t kLongest = 24;
+    std::vector<const VoteCurve*> longest;
+    for (const VoteCurve& curve : search.curves.curves) longest.push_back(&curve);
+    std::ranges::stable_sort(longest, std::greater<>(), [](const VoteCurve* curve) { return curve->points.size(); });
+    std::vector<TubePiece> pieces = longest_round(search.sample, std::min(longest.size(), kLongest), radius,
+                                                  [&](std::size_t k) { return *longest[k]; });
+    std::erase_if(pieces, [&](const TubePiece& piece) { return piece.length() < kShort * radius; });
+    return pieces.empty() ? 0.0 : refine_radius(pieces, search.sample.points, radius);
   }
 
   /// Before a known background all but what other tubes leave over is tube.
   bool all_is_tube() const { return background_is_known_ && !rest_; }
 
-  /// The pieces that are tube, and of the others what is. `outlined`: where their outlines show it.
-  std::vector<ExaminedPiece> tubes_of(const std::vector<ExaminedPiece>& pieces, const FilteredCloud& sample,
-                                      double radius, bool outlined) const {
+  /// The pieces that are tube, and of the others what is. `outlined`: where their outlines do not speak against it.
+  std::vector<ExaminedPiece> tubes_of(const std::vector<TubePiece>& pieces, const FilteredCloud& sample, double radius,
+                                      bool outlined) const {
     const OcclusionTest occlusion = occlusion_.with_radius(radius);
     const auto examine = [&](const TubePiece& piece) { return examine_piece(piece, sample.points, occlusion); };
     const auto shows_tube = [&](const PieceEvidence& evidence) {
       if (all_is_tube()) return !has_other_radius(evidence);
-      return is_tube(evidence, radius, noise_) && !(outlined && goes_on_beside(evidence));
+      return is_tube(evidence, radius, noise_) && !(outlined && goes_on_beside(evidence.outline));
     };
     const auto is_tube_by_itself = [&](const TubePiece& piece) { return shows_tube(examine(piece)); };
     return gather_in_parallel(pieces.size(), [&](std::size_t k) {
       std::vector<ExaminedPiece> tubes;
-      if (shows_tube(pieces[k].evidence)) {
-        tubes.push_back(pieces[k]);
+      if (const PieceEvidence evidence = examine(pieces[k]); shows_tube(evidence)) {
+        tubes.push_back({pieces[k], evidence});
       } else if (!all_is_tube()) {
-        for (TubePiece& stretch : tube_stretches(pieces[k].piece, sample.points, is_tube_by_itself))
+        for (TubePiece& stretch : tube_stretches(pieces[k], sample.points, is_tube_by_itself))
           if (const PieceEvidence own = examine(stretch); shows_tube(own)) tubes.push_back({std::move(stretch), own});
       }
       return tubes;
     });
   }
 
-  /// The part of all that is not flat which lies on tubes: earlier classes' and these, of a sample of `sampled` points of the rest.
-  double tube_part(const std::vector<ExaminedPiece>& tubes, std::size_t sampled) {
-    double on_tubes = 0.0;
-    for (const ExaminedPiece& tube : tubes) on_tubes += static_cast<double>(tube.piece.points.size());
-    const double rest = static_cast<double>(left().points.size()) / static_cast<double>(cloud_.points.size());
-    return 1.0 - rest * (1.0 - on_tubes / static_cast<double>(std::max<std::size_t>(sampled, 1)));
-  }
-
-  /// Cloth, gravel and other rough ground is as round as a tube somewhere: what looks like one has to have a tube's outline there.
-  std::vector<ExaminedPiece> tubes_in(FilteredCloud sample, double radius, bool& has_ground) {
-    const std::size_t sampled = sample.points.size();
-    const FilteredCloud searched = without_ground(std::move(sample), radius);
-    std::vector<TubePiece> found =
-        find_centerline_pieces(searched, segment_by_votes(searched, radius), projection_, radius);
-    const OcclusionTest occlusion = occlusion_.with_radius(radius);
-    const std::vector<ExaminedPiece> pieces = gather_in_parallel(found.size(), [&](std::size_t k) {
-      const PieceEvidence evidence = examine_piece(found[k], searched.points, occlusion);
-      return std::vector<ExaminedPiece>{{std::move(found[k]), evidence}};
-    });
-    std::vector<ExaminedPiece> tubes = tubes_of(pieces, searched, radius, false);
-    // Ground that a believed radius leaves is ground to the next ones, whatever looks like tubes of theirs.
-    has_ground = !background_is_known_ &&
-                 (tube_part(tubes, sampled) < kMostlyTube || (!possible_.empty() && possible_.front().has_ground));
-    if (has_ground) tubes = tubes_of(pieces, searched, radius, true);
-    return tubes;
-  }
-
-  PossibleClass pieces_of(const FilteredCloud& cloud, double radius) {
+  Search search(const FilteredCloud& cloud, double radius) {
     // Points that lie closer together cost time and add nothing: these make 24 votes a voxel of segment_by_votes.
     FilteredCloud sample = sample_of(cloud, radius / 6.0, radius);
-    sampled_ += sample.points.size();
-    PossibleClass found{.sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}};
+    const std::size_t sampled = sample.points.size();
+    Search search{.sample = without_ground(std::move(sample), radius), .curves = {}};
+    search.curves = find_curves(search.sample, segment_by_votes(search.sample, radius), radius);
+    if (background_is_known_) return search;
+    const std::vector<char> is_ground = find_ground(search.curves.curves, radius, occlusion_.with_radius(radius));
+    search.has_ground = is_rough(search.curves.curves, is_ground, sampled);
+    if (search.has_ground) drop_ground(search.curves.curves, is_ground);
+    return search;
+  }
+
+  PossibleClass pieces_of(Search search, double radius) {
+    const auto& [sample, curves, has_ground] = search;
+    const OcclusionTest occlusion = occlusion_.with_radius(radius);
+    const std::vector<TubePiece> pieces =
+        find_centerline_pieces(sample, curves, projection_, radius, [&](std::vector<VoteCurve>& further) {
+          if (search.has_ground) drop_ground(further, find_ground(further, radius, occlusion));
+        });
+    PossibleClass found{
+        .sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}, .has_ground = has_ground};
     double information = 0.0;
     std::vector<double> offs;
-    for (auto& [piece, evidence] : tubes_in(std::move(sample), radius, found.has_ground)) {
+    for (auto& [piece, evidence] : tubes_of(pieces, sample, radius, has_ground)) {
       if (!all_is_tube() && stands_upright(piece, up_)) {
         standing_.push_back(std::move(piece));
         continue;
@@ -344,7 +362,6 @@ class ClassFinder {
   double noise_;
   bool background_is_known_;
   Vec3 up_;
-  std::size_t sampled_ = 0;  ///< points, of all tries
   std::optional<FilteredCloud> rest_;
   std::vector<RoundPlace> round_;
   std::vector<TubePiece> standing_;

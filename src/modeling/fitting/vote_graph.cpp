@@ -3,6 +3,10 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <utility>
+
+#include "modeling/fitting/vote_voxels.hpp"
+#include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -25,12 +29,45 @@ std::uint32_t farthest(const std::vector<double>& distance, std::uint32_t from) 
 
 }  // namespace
 
-VoteGraph::VoteGraph(const FilteredCloud& cloud, const Segment& segment, double radius)
-    : voxels_(votes_of(cloud, segment, radius), radius / 3.0, 1), linked_(voxels_.size()) {
-  for (const auto& [a, b] : voxels_.links(radius / 2.0)) {
+VoteGraph::VoteGraph(const FilteredCloud& cloud, const Segment& segment, double radius) {
+  const VoteVoxels voxels(votes_of(cloud, segment, radius), radius / 3.0, 1);
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    means_.push_back(voxels.mean(i));
+    counts_.push_back(voxels.count(i));
+  }
+  for (std::size_t k = 0; k < segment.size(); ++k) voxel_of_.push_back(voxels.voxel_of(k));
+  linked_.resize(size());
+  for (const auto& [a, b] : voxels.links(radius / 2.0)) {
     linked_[a].push_back(b);
     linked_[b].push_back(a);
   }
+  find_end();
+}
+
+std::vector<VoteGraph> VoteGraph::divided(std::span<const std::uint32_t> part_of_voxel, std::size_t parts) const {
+  std::vector<std::uint32_t> place(size());  // of each voxel in its part
+  std::vector<std::vector<std::uint32_t>> voxels(parts), points(parts);
+  for (std::uint32_t i = 0; i < size(); ++i) {
+    place[i] = static_cast<std::uint32_t>(voxels[part_of_voxel[i]].size());
+    voxels[part_of_voxel[i]].push_back(i);
+  }
+  for (const std::uint32_t i : voxel_of_) points[part_of_voxel[i]].push_back(place[i]);
+  return gather_in_parallel(parts, [&](std::size_t part) {
+    VoteGraph graph;
+    graph.voxel_of_ = std::move(points[part]);
+    for (const std::uint32_t i : voxels[part]) {
+      graph.means_.push_back(mean(i));
+      graph.counts_.push_back(count(i));
+      std::vector<std::uint32_t>& links = graph.linked_.emplace_back();
+      for (const std::uint32_t j : linked_[i])
+        if (part_of_voxel[j] == part) links.push_back(place[j]);
+    }
+    graph.find_end();
+    return std::vector{std::move(graph)};
+  });
+}
+
+void VoteGraph::find_end() {
   // The voxel of most votes is on the line for sure, where any other may be a stray that nothing links to.
   std::uint32_t middle = 0;
   for (std::uint32_t i = 1; i < size(); ++i)

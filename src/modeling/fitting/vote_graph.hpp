@@ -1,10 +1,10 @@
 /// Ways through the centreline votes of one segment.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "modeling/fitting/vote_voxels.hpp"
 #include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/tube_model.hpp"
 
@@ -15,12 +15,15 @@ class VoteGraph {
  public:
   /// All votes of the segment, since some alone may leave gaps wider than a link.
   VoteGraph(const FilteredCloud& cloud, const Segment& segment, double radius);
+  /// The graphs of its parts: `part_of_voxel` numbers them from 0 to `parts` - 1. Each keeps the order of voxels and points, and is
+  /// what its points alone would make.
+  std::vector<VoteGraph> divided(std::span<const std::uint32_t> part_of_voxel, std::size_t parts) const;
 
-  std::size_t size() const { return voxels_.size(); }
-  const cloud::Point& mean(std::size_t voxel) const { return voxels_.mean(voxel); }
-  std::size_t count(std::size_t voxel) const { return voxels_.count(voxel); }
+  std::size_t size() const { return means_.size(); }
+  const cloud::Point& mean(std::size_t voxel) const { return means_[voxel]; }
+  std::size_t count(std::size_t voxel) const { return counts_[voxel]; }
   /// Voxel of the segment's point k.
-  std::uint32_t voxel_of(std::size_t k) const { return voxels_.voxel_of(k); }
+  std::uint32_t voxel_of(std::size_t k) const { return voxel_of_[k]; }
   std::span<const std::uint32_t> linked(std::uint32_t voxel) const { return linked_[voxel]; }
 
   /// Length of the shortest way from each voxel to the nearest of `sources`, metres; infinite where there is none.
@@ -32,7 +35,12 @@ class VoteGraph {
   std::vector<std::uint32_t> longest_way() const;
 
  private:
-  VoteVoxels voxels_;
+  VoteGraph() = default;
+  void find_end();
+
+  std::vector<cloud::Point> means_;
+  std::vector<std::size_t> counts_;
+  std::vector<std::uint32_t> voxel_of_;
   std::vector<std::vector<std::uint32_t>> linked_;
   std::uint32_t end_ = 0;
   std::vector<double> distances_from_end_;

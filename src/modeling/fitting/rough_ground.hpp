@@ -1,0 +1,21 @@
+/// Cloth, gravel, ribs: ground that is as round as a tube here and there.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "modeling/fitting/vote_curve.hpp"
+#include "modeling/joining/occlusion.hpp"
+
+namespace tubebin::modeling {
+
+/// For each curve, whether the surface goes on beside a tube about it.
+std::vector<char> find_ground(const std::vector<VoteCurve>& curves, double radius, const OcclusionTest& occlusion);
+
+/// Whether the ground is rough: of the `sampled` points of what is not flat, which are many, most are on no curve but those of the
+/// ground.
+bool is_rough(const std::vector<VoteCurve>& curves, const std::vector<char>& is_ground, std::size_t sampled);
+
+void drop_ground(std::vector<VoteCurve>& curves, const std::vector<char>& is_ground);
+
+}  // namespace tubebin::modeling
