@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <queue>
 #include <utility>
 
@@ -36,11 +37,13 @@ VoteGraph::VoteGraph(const FilteredCloud& cloud, const Segment& segment, double 
     counts_.push_back(voxels.count(i));
   }
   for (std::size_t k = 0; k < segment.size(); ++k) voxel_of_.push_back(voxels.voxel_of(k));
-  linked_.resize(size());
-  for (const auto& [a, b] : voxels.links(radius / 2.0)) {
-    linked_[a].push_back(b);
-    linked_[b].push_back(a);
-  }
+  const auto pairs = voxels.links(radius / 2.0);
+  first_link_.resize(size() + 1, 0);
+  for (const auto& [a, b] : pairs) ++first_link_[a + 1], ++first_link_[b + 1];
+  std::partial_sum(first_link_.begin(), first_link_.end(), first_link_.begin());
+  links_.resize(2 * pairs.size());
+  std::vector<std::uint32_t> next = first_link_;
+  for (const auto& [a, b] : pairs) links_[next[a]++] = b, links_[next[b]++] = a;
   find_end();
 }
 
@@ -58,9 +61,9 @@ std::vector<VoteGraph> VoteGraph::divided(std::span<const std::uint32_t> part_of
     for (const std::uint32_t i : voxels[part]) {
       graph.means_.push_back(mean(i));
       graph.counts_.push_back(count(i));
-      std::vector<std::uint32_t>& links = graph.linked_.emplace_back();
-      for (const std::uint32_t j : linked_[i])
-        if (part_of_voxel[j] == part) links.push_back(place[j]);
+      for (const std::uint32_t j : linked(i))
+        if (part_of_voxel[j] == part) graph.links_.push_back(place[j]);
+      graph.first_link_.push_back(static_cast<std::uint32_t>(graph.links_.size()));
     }
     graph.find_end();
     return std::vector{std::move(graph)};
@@ -88,7 +91,7 @@ std::vector<double> VoteGraph::distances_from(std::span<const std::uint32_t> sou
     const auto [d, i] = queue.top();
     queue.pop();
     if (d > distance[i]) continue;
-    for (const std::uint32_t j : linked_[i]) {
+    for (const std::uint32_t j : linked(i)) {
       const double through = d + double((mean(i) - mean(j)).norm());
       if (through >= distance[j]) continue;
       distance[j] = through;
@@ -103,7 +106,7 @@ std::vector<std::uint32_t> VoteGraph::longest_way() const {
   std::vector<std::uint32_t> way = {farthest(distance, end_)};
   while (way.back() != end_) {
     std::uint32_t before = way.back();
-    for (const std::uint32_t j : linked_[way.back()])
+    for (const std::uint32_t j : linked(way.back()))
       if (distance[j] < distance[before]) before = j;
     way.push_back(before);
   }

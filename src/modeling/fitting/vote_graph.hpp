@@ -24,7 +24,9 @@ class VoteGraph {
   std::size_t count(std::size_t voxel) const { return counts_[voxel]; }
   /// Voxel of the segment's point k.
   std::uint32_t voxel_of(std::size_t k) const { return voxel_of_[k]; }
-  std::span<const std::uint32_t> linked(std::uint32_t voxel) const { return linked_[voxel]; }
+  std::span<const std::uint32_t> linked(std::uint32_t voxel) const {
+    return std::span(links_).subspan(first_link_[voxel], first_link_[voxel + 1] - first_link_[voxel]);
+  }
 
   /// Length of the shortest way from each voxel to the nearest of `sources`, metres; infinite where there is none.
   std::vector<double> distances_from(std::span<const std::uint32_t> sources) const;
@@ -41,7 +43,8 @@ class VoteGraph {
   std::vector<cloud::Point> means_;
   std::vector<std::size_t> counts_;
   std::vector<std::uint32_t> voxel_of_;
-  std::vector<std::vector<std::uint32_t>> linked_;
+  std::vector<std::uint32_t> links_;             ///< of all voxels, one after the other
+  std::vector<std::uint32_t> first_link_ = {0};  ///< of each voxel, and the end
   std::uint32_t end_ = 0;
   std::vector<double> distances_from_end_;
 };

@@ -9,13 +9,14 @@
 namespace tubebin::modeling {
 namespace {
 
-std::size_t hash(std::int32_t x, std::int32_t y, std::int32_t z) {
+/// Where the search for a voxel begins. Voxels of a block of 2 x 2 x 4 are neighbours in the table, too, a cache line.
+std::size_t first_slot(std::int32_t x, std::int32_t y, std::int32_t z) {
   // Teschner et al. 2003, "Optimized Spatial Hashing for Collision Detection of Deformable Objects", with the bits
   // mixed down since the table takes the lowest.
-  std::uint64_t h = static_cast<std::uint32_t>(x) * 73856093ULL ^ static_cast<std::uint32_t>(y) * 19349663ULL ^
-                    static_cast<std::uint32_t>(z) * 83492791ULL;
+  std::uint64_t h = static_cast<std::uint32_t>(x >> 1) * 73856093ULL ^
+                    static_cast<std::uint32_t>(y >> 1) * 19349663ULL ^ static_cast<std::uint32_t>(z >> 2) * 83492791ULL;
   h ^= h >> 15;
-  return static_cast<std::size_t>(h);
+  return static_cast<std::size_t>(h << 4 | (x & 1) << 3 | (y & 1) << 2 | (z & 3));
 }
 
 }  // namespace
@@ -55,7 +56,7 @@ VoteVoxels::VoteVoxels(std::span<const cloud::Point> votes, double voxel, std::s
 }
 
 std::size_t VoteVoxels::slot_of(const Key& key) const {
-  std::size_t slot = hash(key.x, key.y, key.z) & (table_.size() - 1);
+  std::size_t slot = first_slot(key.x, key.y, key.z) & (table_.size() - 1);
   while (table_[slot] != kNone && !(keys_[table_[slot]] == key)) slot = (slot + 1) & (table_.size() - 1);
   return slot;
 }
