@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <optional>
 
-#include "modeling/fitting/branch_splitting.hpp"
-#include "modeling/fitting/centerline_fitting.hpp"
 #include "modeling/fitting/centerline_pieces.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
 #include "modeling/fitting/piece_cleaning.hpp"
 #include "modeling/fitting/piece_evidence.hpp"
+#include "modeling/fitting/radius_refining.hpp"
 #include "modeling/fitting/rough_ground.hpp"
 #include "modeling/fitting/tube_stretches.hpp"
 #include "modeling/fitting/vote_sheets.hpp"
@@ -161,7 +159,9 @@ class ClassFinder {
       // Where points are sparse, normals from as many as a known radius would not let in are too flat.
       if (reach(cloud, radius) < 0.9 * reach(cloud, round == 0 ? 0.0 : 2.0 * radius))
         cloud.normals = estimate_normals(projection_, cloud.points, reach(cloud, radius), 1, cloud.viewpoints);
-      const double refined = refined_radius(cloud, radius);
+      // A quarter of a radius apart, a stretch of tube still has some ten votes in a voxel of segment_by_votes.
+      const FilteredCloud sample = without_ground(sample_of(cloud, radius / 4.0, radius), radius);
+      const double refined = refined_radius(sample, radius, projection_, occlusion_.with_radius(radius));
       if (refined <= 0.0) return {};
       if (is_tried(refined, tried)) break;
       const bool is_settled = std::abs(refined - radius) < 0.05 * radius;
@@ -171,7 +171,8 @@ class ClassFinder {
     Search found = search(cloud, radius);
     if (found.has_ground) {
       // The longest pieces may have been ground, and the radius as well.
-      const double own = radius_by_outlined(found, radius);
+      const double own =
+          radius_along(found.curves.curves, found.sample, radius, projection_, occlusion_.with_radius(radius));
       if (own <= 0.0) return {};
       if (std::abs(own - radius) > 0.01 * radius && !is_tried(own, tried)) found = search(cloud, radius = own);
     }
@@ -192,68 +193,6 @@ class ClassFinder {
   /// What is left where ground that is not flat has been taken away; all where the ground is known.
   FilteredCloud without_ground(FilteredCloud sample, double radius) const {
     return background_is_known_ ? std::move(sample) : without_sheets(sample, radius);
-  }
-
-  static std::vector<TubePiece> round_ones(std::vector<TubePiece> pieces, const FilteredCloud& sample,
-                                           const OcclusionTest& occlusion) {
-    std::erase_if(pieces, [&](const TubePiece& piece) {
-      const PieceEvidence evidence = examine_piece(piece, sample.points, occlusion);
-      return std::abs(evidence.curvature - 1.0) > 0.4 || evidence.empty > 0.3;
-    });
-    return pieces;
-  }
-
-  /// Of the pieces along curve_of(0) to curve_of(count - 1), longest first, as many that are round as a radius needs.
-  std::vector<TubePiece> longest_round(const FilteredCloud& sample, std::size_t count, double radius,
-                                       const std::function<VoteCurve(std::size_t)>& curve_of) const {
-    constexpr std::size_t kEnough = 5;
-    const OcclusionTest occlusion = occlusion_.with_radius(radius);
-    const auto round_piece = [&](std::size_t k) {
-      const VoteCurve curve = curve_of(k);
-      const Vec3 viewpoint = viewpoint_of(sample, curve.points, projection_);
-      // Bends that are cut would make the radius too small.
-      const auto piece = fit_centerline(sample, curve, bend_tolerance({}, radius), {}, radius, viewpoint);
-      return round_ones(piece ? std::vector{*piece} : std::vector<TubePiece>{}, sample, occlusion);
-    };
-    std::vector<TubePiece> pieces;
-    for (std::size_t next = 0; next < count && pieces.size() < kEnough;) {
-      const std::size_t part = std::min(kEnough - pieces.size(), count - next);
-      std::ranges::move(gather_in_parallel(part, [&](std::size_t k) { return round_piece(next + k); }),
-                        std::back_inserter(pieces));
-      next += part;
-    }
-    return pieces;
-  }
-
-  /// As the longest pieces that are tubes show it; 0 where none is.
-  double refined_radius(const FilteredCloud& cloud, double radius) const {
-    constexpr std::size_t kLongest = 12;
-    // A quarter of a radius apart, a stretch of tube still has some ten votes in a voxel of segment_by_votes.
-    const FilteredCloud sample = without_ground(sample_of(cloud, radius / 4.0, radius), radius);
-    auto segments = segment_by_votes(sample, radius);
-    std::ranges::sort(segments, [](const Segment& a, const Segment& b) { return a.size() > b.size(); });
-    if (segments.size() > kLongest) segments.resize(kLongest);
-    std::vector<TubePiece> pieces = longest_round(sample, segments.size(), radius, [&](std::size_t k) {
-      Split split = split_off_longest({segments[k], VoteGraph(sample, segments[k], radius)}, radius);
-      return find_vote_curve(sample, std::move(split.longest), radius);
-    });
-    // A ring's surface is no one piece.
-    if (pieces.empty())
-      pieces = round_ones(fit_curves(sample, find_curves(sample, segments, radius), projection_, radius), sample,
-                          occlusion_.with_radius(radius));
-    return pieces.empty() ? 0.0 : refine_radius(pieces, sample.points, radius);
-  }
-
-  /// As the longest pieces that have a tube's outline show it; 0 where none that is round is long.
-  double radius_by_outlined(const Search& search, double radius) const {
-    constexpr std::size_t kLongest = 24;
-    std::vector<const VoteCurve*> longest;
-    for (const VoteCurve& curve : search.curves.curves) longest.push_back(&curve);
-    std::ranges::stable_sort(longest, std::greater<>(), [](const VoteCurve* curve) { return curve->points.size(); });
-    std::vector<TubePiece> pieces = longest_round(search.sample, std::min(longest.size(), kLongest), radius,
-                                                  [&](std::size_t k) { return *longest[k]; });
-    std::erase_if(pieces, [&](const TubePiece& piece) { return piece.length() < kShort * radius; });
-    return pieces.empty() ? 0.0 : refine_radius(pieces, search.sample.points, radius);
   }
 
   /// Before a known background all but what other tubes leave over is tube.
