@@ -11,14 +11,20 @@
 
 namespace tubebin::modeling {
 
-/// What work(0) to work(count - 1) return, each a vector, one after the other.
+/// What work(0) to work(count - 1) return.
+template <typename Work>
+auto map_in_parallel(std::size_t count, const Work& work) {
+  std::vector<std::invoke_result_t<Work, std::size_t>> results(count);
+  tbb::parallel_for(
+      std::size_t{0}, count, [&](std::size_t k) { results[k] = work(k); }, tbb::simple_partitioner());
+  return results;
+}
+
+/// The same of vectors, one after the other.
 template <typename Work>
 auto gather_in_parallel(std::size_t count, const Work& work) {
-  std::vector<std::invoke_result_t<Work, std::size_t>> parts(count);
-  tbb::parallel_for(
-      std::size_t{0}, count, [&](std::size_t k) { parts[k] = work(k); }, tbb::simple_partitioner());
   std::invoke_result_t<Work, std::size_t> all;
-  for (auto& part : parts) std::ranges::move(part, std::back_inserter(all));
+  for (auto& part : map_in_parallel(count, work)) std::ranges::move(part, std::back_inserter(all));
   return all;
 }
 

@@ -39,9 +39,8 @@ FilteredCloud still_unexplained(const FilteredCloud& rest, const FilteredCloud& 
 SegmentCurves find_curves(const FilteredCloud& cloud, std::vector<Segment> segments, double radius) {
   std::vector<Stretch> stretches =
       gather_in_parallel(segments.size(), [&](std::size_t k) { return split_branches(cloud, segments[k], radius); });
-  std::vector<VoteCurve> curves = gather_in_parallel(stretches.size(), [&](std::size_t k) {
-    return std::vector{find_vote_curve(cloud, std::move(stretches[k]), radius)};
-  });
+  std::vector<VoteCurve> curves = map_in_parallel(
+      stretches.size(), [&](std::size_t k) { return find_vote_curve(cloud, std::move(stretches[k]), radius); });
   return {.segments = std::move(segments), .curves = std::move(curves)};
 }
 

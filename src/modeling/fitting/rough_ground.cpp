@@ -8,22 +8,21 @@ namespace tubebin::modeling {
 
 std::vector<char> find_ground(const std::vector<VoteCurve>& curves, double radius, const OcclusionTest& occlusion) {
   const double tolerance = bend_tolerance(curves, radius);
-  return gather_in_parallel(curves.size(), [&](std::size_t k) {
-    const std::vector<Vec3> nodes = first_nodes(curves[k], tolerance, radius);
-    return std::vector<char>{goes_on_beside(outline_along(nodes, radius, occlusion))};
+  return map_in_parallel(curves.size(), [&](std::size_t k) -> char {
+    return goes_on_beside(outline_along(first_nodes(curves[k], tolerance, radius), radius, occlusion));
   });
 }
 
 bool is_rough(const std::vector<VoteCurve>& curves, const std::vector<char>& is_ground, std::size_t sampled) {
-  // Points r / 6 apart: twenty tubes, forty radii long, have fewer. Real scans round their edges, and the outlines of most of a few
-  // real rods are lost; on rough ground, all that lies beside them is ground by this test, too.
+  // Points r / 6 apart: twenty tubes, forty radii long, have fewer. Real scans round their edges, and most of a few rods' outlines are
+  // lost: so little is no rough ground.
   constexpr std::size_t kMany = 50'000;
-  constexpr double kMostlyGround = 2.0 / 3.0;
+  constexpr double kLeastOutlined = 1.0 / 3.0;
   if (sampled < kMany) return false;
   std::size_t outlined = 0;
   for (std::size_t k = 0; k < curves.size(); ++k)
     if (!is_ground[k]) outlined += curves[k].points.size();
-  return static_cast<double>(outlined) < (1.0 - kMostlyGround) * static_cast<double>(sampled);
+  return static_cast<double>(outlined) < kLeastOutlined * static_cast<double>(sampled);
 }
 
 void drop_ground(std::vector<VoteCurve>& curves, const std::vector<char>& is_ground) {

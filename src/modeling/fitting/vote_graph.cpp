@@ -55,7 +55,7 @@ std::vector<VoteGraph> VoteGraph::divided(std::span<const std::uint32_t> part_of
     voxels[part_of_voxel[i]].push_back(i);
   }
   for (const std::uint32_t i : voxel_of_) points[part_of_voxel[i]].push_back(place[i]);
-  return gather_in_parallel(parts, [&](std::size_t part) {
+  return map_in_parallel(parts, [&](std::size_t part) {
     VoteGraph graph;
     graph.voxel_of_ = std::move(points[part]);
     for (const std::uint32_t i : voxels[part]) {
@@ -66,7 +66,7 @@ std::vector<VoteGraph> VoteGraph::divided(std::span<const std::uint32_t> part_of
       graph.first_link_.push_back(static_cast<std::uint32_t>(graph.links_.size()));
     }
     graph.find_end();
-    return std::vector{std::move(graph)};
+    return graph;
   });
 }
 

@@ -13,6 +13,7 @@ namespace tubebin::modeling {
 /// Voxels of votes as the vertices of a graph: those whose mean votes are at most half a radius apart are linked.
 class VoteGraph {
  public:
+  VoteGraph() = default;
   /// All votes of the segment, since some alone may leave gaps wider than a link.
   VoteGraph(const FilteredCloud& cloud, const Segment& segment, double radius);
   /// The graphs of its parts: `part_of_voxel` numbers them from 0 to `parts` - 1. Each keeps the order of voxels and points, and is
@@ -37,7 +38,6 @@ class VoteGraph {
   std::vector<std::uint32_t> longest_way() const;
 
  private:
-  VoteGraph() = default;
   void find_end();
 
   std::vector<cloud::Point> means_;

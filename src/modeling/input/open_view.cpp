@@ -82,8 +82,8 @@ Vec3 most_open_viewpoint(std::span<const Vec3> points, const Vec3& behind) {
     if (behind.isZero() || direction.dot(behind) < 0.0)
       for (const double distance : {2.5, 4.0, 8.0})  // of whole cells, bins, and parts of them
         viewpoints.push_back(middle + distance * spread * direction);
-  const std::vector<double> hidden = gather_in_parallel(
-      viewpoints.size(), [&](std::size_t k) { return std::vector{hidden_share(points, viewpoints[k], kWidths)}; });
+  const std::vector<double> hidden =
+      map_in_parallel(viewpoints.size(), [&](std::size_t k) { return hidden_share(points, viewpoints[k], kWidths); });
   return viewpoints[static_cast<std::size_t>(std::ranges::min_element(hidden) - hidden.begin())];
 }
 
