@@ -23,11 +23,9 @@ struct Guess {
   const ViewProjection& projection;
   const OcclusionTest& occlusion;
 
-  void keep_round(std::vector<TubePiece>& pieces) const {
-    std::erase_if(pieces, [&](const TubePiece& piece) {
-      const PieceEvidence evidence = examine_piece(piece, cloud.points, occlusion);
-      return std::abs(evidence.curvature - 1.0) > 0.4 || evidence.empty > 0.3;
-    });
+  bool is_round(const TubePiece& piece) const {
+    const PieceEvidence evidence = examine_piece(piece, cloud.points, occlusion);
+    return std::abs(evidence.curvature - 1.0) <= 0.4 && evidence.empty <= 0.3;
   }
 
   /// Of the pieces along curve_of(0) to curve_of(count - 1), longest first, as many that are round as a radius needs.
@@ -38,9 +36,7 @@ struct Guess {
       // Bends that are cut would make the radius too small.
       const auto piece = fit_centerline(cloud, curve, bend_tolerance({}, radius), {}, radius,
                                         viewpoint_of(cloud, curve.points, projection));
-      std::vector<TubePiece> round = piece ? std::vector{*piece} : std::vector<TubePiece>{};
-      keep_round(round);
-      return round;
+      return piece && is_round(*piece) ? std::vector{*piece} : std::vector<TubePiece>{};
     };
     std::vector<TubePiece> pieces;
     for (std::size_t next = 0; next < count && pieces.size() < kEnough;) {
@@ -73,7 +69,7 @@ double refined_radius(const FilteredCloud& cloud, double guess, const ViewProjec
   if (pieces.empty()) {
     // A ring's surface is no one piece.
     pieces = fit_curves(cloud, find_curves(cloud, segments, guess), projection, guess);
-    guessed.keep_round(pieces);
+    std::erase_if(pieces, [&](const TubePiece& piece) { return !guessed.is_round(piece); });
   }
   return guessed.radius_of(pieces);
 }

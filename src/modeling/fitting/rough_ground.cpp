@@ -5,6 +5,13 @@
 #include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
+namespace {
+
+/// Points r / 6 apart: twenty tubes, forty radii long, have fewer. Real scans round their edges, and most of a few rods' outlines are
+/// lost: so little is no rough ground.
+constexpr std::size_t kMany = 50'000;
+
+}  // namespace
 
 std::vector<char> find_ground(const std::vector<VoteCurve>& curves, double radius, const OcclusionTest& occlusion) {
   const double tolerance = bend_tolerance(curves, radius);
@@ -14,9 +21,6 @@ std::vector<char> find_ground(const std::vector<VoteCurve>& curves, double radiu
 }
 
 bool is_rough(const std::vector<VoteCurve>& curves, const std::vector<char>& is_ground, std::size_t sampled) {
-  // Points r / 6 apart: twenty tubes, forty radii long, have fewer. Real scans round their edges, and most of a few rods' outlines are
-  // lost: so little is no rough ground.
-  constexpr std::size_t kMany = 50'000;
   constexpr double kLeastOutlined = 1.0 / 3.0;
   if (sampled < kMany) return false;
   std::size_t outlined = 0;
@@ -28,6 +32,15 @@ bool is_rough(const std::vector<VoteCurve>& curves, const std::vector<char>& is_
 void drop_ground(std::vector<VoteCurve>& curves, const std::vector<char>& is_ground) {
   std::size_t next = 0;
   std::erase_if(curves, [&](const VoteCurve&) { return is_ground[next++] != 0; });
+}
+
+bool drop_rough_ground(std::vector<VoteCurve>& curves, std::size_t sampled, double radius,
+                       const OcclusionTest& occlusion) {
+  if (sampled < kMany) return false;  // most clouds need no outlines
+  const std::vector<char> is_ground = find_ground(curves, radius, occlusion);
+  if (!is_rough(curves, is_ground, sampled)) return false;
+  drop_ground(curves, is_ground);
+  return true;
 }
 
 }  // namespace tubebin::modeling

@@ -18,4 +18,8 @@ bool is_rough(const std::vector<VoteCurve>& curves, const std::vector<char>& is_
 
 void drop_ground(std::vector<VoteCurve>& curves, const std::vector<char>& is_ground);
 
+/// Drops the curves of the ground where it is rough; whether it is.
+bool drop_rough_ground(std::vector<VoteCurve>& curves, std::size_t sampled, double radius,
+                       const OcclusionTest& occlusion);
+
 }  // namespace tubebin::modeling

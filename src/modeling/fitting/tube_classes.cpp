@@ -226,10 +226,8 @@ class ClassFinder {
     const std::size_t sampled = sample.points.size();
     Search search{.sample = without_ground(std::move(sample), radius), .curves = {}};
     search.curves = find_curves(search.sample, segment_by_votes(search.sample, radius), radius);
-    if (background_is_known_) return search;
-    const std::vector<char> is_ground = find_ground(search.curves.curves, radius, occlusion_.with_radius(radius));
-    search.has_ground = is_rough(search.curves.curves, is_ground, sampled);
-    if (search.has_ground) drop_ground(search.curves.curves, is_ground);
+    search.has_ground = !background_is_known_ &&
+                        drop_rough_ground(search.curves.curves, sampled, radius, occlusion_.with_radius(radius));
     return search;
   }
 
