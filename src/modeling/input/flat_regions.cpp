@@ -1,9 +1,13 @@
 #include "modeling/input/flat_regions.hpp"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "modeling/input/flat_blocks.hpp"
 #include "modeling/parallel.hpp"
@@ -22,8 +26,8 @@ class Region {
   double within = 0.0;  ///< sum of the squares of the points' distances to their own blocks' planes
   std::vector<std::uint32_t> blocks;
 
+  /// Adds what is known of one of the blocks.
   void add(const FlatBlocks& all, std::uint32_t block) {
-    blocks.push_back(block);
     moments += all.moments(block);
     within += all.residual(block) * all.moments(block).count;
   }
@@ -55,27 +59,52 @@ class Region {
   }
 };
 
+/// Which blocks a region in the making has reached.
+class Visits {
+ public:
+  void begin(std::size_t blocks) {
+    last_.resize(blocks, 0);
+    ++turn_;
+  }
+  void add(std::uint32_t block) { last_[block] = turn_; }
+  bool has(std::uint32_t block) const { return last_[block] == turn_; }
+
+ private:
+  std::vector<std::uint32_t> last_;  ///< of each block, the last turn that reached it
+  std::uint32_t turn_ = 0;
+};
+
 /// Grows regions from block to block.
 class RegionGrower {
  public:
   RegionGrower(const FlatBlocks& blocks, const FlatWindows& windows)
-      : blocks_(blocks), windows_(windows), middles_(blocks.size()), is_taken_(blocks.size(), false) {
+      : blocks_(blocks), windows_(windows), faces_(blocks.size()), is_taken_(blocks.size(), false) {
     for_ranges_in_parallel(blocks.size(), [&](std::size_t first, std::size_t last) {
       for (std::size_t b = first; b < last; ++b)
-        if (windows.is_flat(b)) middles_[b] = {blocks.moments(b).mean(), kOnPlane * blocks.spacing(b)};
+        if (windows.is_flat(b))
+          faces_[b] = {blocks.moments(b).mean(), windows.plane(b).normal, kOnPlane * blocks.spacing(b)};
     });
   }
 
+  /// As if one seed after the other grew. Most seeds on a curved surface grow no region: several grow at once, as if those
+  /// before them grew none, up to the first that does.
   std::vector<Region> grow_all() {
+    constexpr std::size_t kMostAtOnce = 256;
+    const std::vector<std::uint32_t> seeds = this->seeds();
     std::vector<Region> regions;
-    for (const std::uint32_t seed : seeds()) {
-      if (is_taken_[seed]) continue;
-      Region region = grow(seed);
-      if (region.blocks.size() >= kLeastBlocks && region.is_flat(blocks_, windows_)) {
-        regions.push_back(std::move(region));
-      } else {
-        for (const std::uint32_t block : region.blocks) is_taken_[block] = false;
-      }
+    std::vector<std::size_t> tried;  // numbers of seeds
+    for (std::size_t next = 0, at_once = 1; next < seeds.size();) {
+      tried.clear();
+      for (; next < seeds.size() && tried.size() < at_once; ++next)
+        if (!is_taken_[seeds[next]]) tried.push_back(next);
+      std::vector<std::optional<Region>> grown =
+          map_in_parallel(tried.size(), [&](std::size_t k) { return grow(seeds[tried[k]]); });
+      at_once = std::min(2 * at_once, kMostAtOnce);
+      const auto found = std::ranges::find_if(grown, &std::optional<Region>::has_value);
+      if (found == grown.end()) continue;
+      for (const std::uint32_t block : (*found)->blocks) is_taken_[block] = true;
+      regions.push_back(std::move(**found));
+      next = tried[static_cast<std::size_t>(found - grown.begin())] + 1, at_once = 1;
     }
     return regions;
   }
@@ -83,9 +112,9 @@ class RegionGrower {
  private:
   static constexpr std::size_t kLeastBlocks = 12;
 
-  struct Middle {
-    Vec3 place = Vec3::Zero();
-    double reach = 0.0;  ///< metres, from a plane that the block lies on, beside noise
+  struct Face {
+    Vec3 middle = Vec3::Zero(), normal = Vec3::Zero();
+    double reach = -std::numeric_limits<double>::infinity();  ///< metres, from a plane that the block lies on, beside noise
   };
 
   /// Flat blocks among flat ones that agree with them: one at an edge may lean.
@@ -98,7 +127,7 @@ class RegionGrower {
         if (!windows_.is_flat(block)) continue;
         int agreeing = 0;
         for_each_neighbor(block, [&](std::uint32_t next) {
-          agreeing += windows_.is_flat(next) && lies_on(next, windows_.plane(block));
+          agreeing += lies_on(next, windows_.plane(block));
         });
         if (agreeing >= 5) seeds_of_row.push_back(block);
       }
@@ -116,36 +145,42 @@ class RegionGrower {
 
   bool lies_on(std::uint32_t block, const FittedPlane& plane) const {
     constexpr double kParallel = 0.99;  // the cosine of 8 degrees
-    if (std::abs(windows_.plane(block).normal.dot(plane.normal)) < kParallel) return false;
-    const auto& [place, reach] = middles_[block];
-    return std::abs((place - plane.center).dot(plane.normal)) < std::sqrt(plane.mean_square) + reach;
+    const auto& [middle, normal, reach] = faces_[block];
+    return std::abs((middle - plane.center).dot(plane.normal)) < std::sqrt(plane.mean_square) + reach &&
+           std::abs(normal.dot(plane.normal)) >= kParallel;
   }
 
-  Region grow(std::uint32_t seed) {
-    std::vector<std::uint32_t> front = {seed};
-    Region region{.moments = {}, .plane = windows_.plane(seed), .within = 0.0, .blocks = {}};
-    is_taken_[seed] = true;
+  /// The region about a seed; none where it is not flat.
+  std::optional<Region> grow(std::uint32_t seed) {
+    Region region{.moments = {}, .plane = windows_.plane(seed), .within = 0.0, .blocks = {seed}};
+    Visits& visits = visits_.local();
+    visits.begin(blocks_.size());
+    visits.add(seed);
     std::size_t refit_at = 8;
-    for (std::size_t k = 0; k < front.size(); ++k) {
-      region.add(blocks_, front[k]);
+    for (std::size_t k = 0; k < region.blocks.size(); ++k) {
+      const std::uint32_t block = region.blocks[k];
+      region.add(blocks_, block);
       if (k + 1 == refit_at) {
         region.plane = FittedPlane(region.moments);
         refit_at += refit_at / 2;
       }
-      for_each_neighbor(front[k], [&](std::uint32_t next) {
-        if (is_taken_[next] || !windows_.is_flat(next) || !lies_on(next, region.plane)) return;
-        is_taken_[next] = true;
-        front.push_back(next);
+      for_each_neighbor(block, [&](std::uint32_t next) {
+        if (is_taken_[next] || visits.has(next) || !lies_on(next, region.plane)) return;
+        visits.add(next);
+        region.blocks.push_back(next);
       });
     }
+    if (region.blocks.size() < kLeastBlocks) return std::nullopt;
     region.plane = FittedPlane(region.moments);
+    if (!region.is_flat(blocks_, windows_)) return std::nullopt;
     return region;
   }
 
   const FlatBlocks& blocks_;
   const FlatWindows& windows_;
-  std::vector<Middle> middles_;  ///< of the flat blocks
+  std::vector<Face> faces_;  ///< of the flat blocks; no plane is in reach of the others
   std::vector<bool> is_taken_;
+  tbb::enumerable_thread_specific<Visits> visits_;
 };
 
 /// Tubes cut a floor into many regions of one plane.
