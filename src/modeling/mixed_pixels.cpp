@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "modeling/input/normals.hpp"
+#include "modeling/input/neighborhoods.hpp"
 
 namespace tubebin::modeling {
 namespace {

@@ -66,10 +66,9 @@ std::vector<double> told_radii(const ModelingOptions& options) {
 }
 
 /// Radii and pieces; of `--method region_growing`, which finds pieces of its own, a told radius alone.
-TubeClasses find_classes(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& scan,
+TubeClasses find_classes(const FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& scan,
                          const Background& background, const SceneFound& found, const ModelingOptions& options) {
   const std::vector<double> radii = told_radii(options);
-  if (!radii.empty()) cloud.normals.clear();  // they are of no known radius
   if (options.method == ModelingMethod::region_growing && !radii.empty())
     return {.classes = {{.radius = radii.front(), .radius_error = 0.0, .pieces = {}}}, .round = {}};
   return find_tube_classes(cloud, projection, scan, background.noise, background.is_known,
@@ -186,7 +185,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   // What lies in a known bin is there to be found, whatever it is.
   std::vector<TubePiece> balls;
   if (input.bin && options.method == ModelingMethod::centerline)
-    balls = find_balls(std::move(round), cloud, background.noise, classes);
+    balls = find_balls(std::move(round), cloud, projection, background.noise, classes);
   for (const TubeClass& tube_class : classes) {
     result.radii.push_back(tube_class.radius);
     result.radius_errors.push_back(tube_class.radius_error);

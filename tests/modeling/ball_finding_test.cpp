@@ -54,7 +54,6 @@ FilteredCloud cap_of_ball(const Vec3& center) {
     const double z = 1.0 - (2.0 * k + 1.0) / kPoints, angle = k * std::numbers::pi * (3.0 - std::sqrt(5.0));
     const Vec3 normal(std::sqrt(1.0 - z * z) * std::cos(angle), std::sqrt(1.0 - z * z) * std::sin(angle), z);
     cloud.points.push_back((center + kBall * normal).cast<float>());
-    cloud.normals.push_back(normal.cast<float>());
   }
   return cloud;
 }
@@ -62,13 +61,13 @@ FilteredCloud cap_of_ball(const Vec3& center) {
 TEST(Ball, TakesWhatTubesHaveOnItsSurface) {
   const Vec3 center(0.1, 0.2, 0.3);
   const FilteredCloud cloud = cap_of_ball(center);
-  const CurvedPlaces places = find_curved_places(cloud.points, cloud.normals, view_from_above(), cloud.spacing);
+  const CurvedPlaces places = curved_places_of(cloud);
   const TubePiece on_ball{
       .nodes = {center + Vec3(-0.01, 0.0, 0.01), center + Vec3(0.01, 0.0, 0.01)}, .radius = kRadius, .points = {}};
   const TubePiece beside{.nodes = {center, center + Vec3(0.2, 0.0, 0.0)}, .radius = kRadius, .points = {}};
   std::vector<TubeClass> classes = {{.radius = kRadius, .radius_error = 0.0, .pieces = {on_ball, beside}},
                                     {.radius = 0.008, .radius_error = 0.0, .pieces = {on_ball}}};
-  const std::vector<TubePiece> balls = find_balls(places.round, cloud, 0.0, classes);
+  const std::vector<TubePiece> balls = find_balls(places.round, cloud, view_from_above(), 0.0, classes);
   ASSERT_EQ(balls.size(), 1U);
   EXPECT_LT((balls.front().nodes.front() - center).norm(), 1e-6);
   EXPECT_NEAR(balls.front().radius, kBall, 1e-6);
@@ -79,19 +78,19 @@ TEST(Ball, TakesWhatTubesHaveOnItsSurface) {
 
 TEST(Ball, IsNoneAsThickAsTubes) {
   const FilteredCloud cloud = cap_of_ball(Vec3::Zero());
-  const CurvedPlaces places = find_curved_places(cloud.points, cloud.normals, view_from_above(), cloud.spacing);
+  const CurvedPlaces places = curved_places_of(cloud);
   std::vector<TubeClass> classes = {{.radius = kBall,
                                      .radius_error = 0.0,
                                      .pieces = {{.nodes = {{0, 0, 0}, {0.2, 0, 0}}, .radius = kBall, .points = {}}}}};
-  EXPECT_TRUE(find_balls(places.round, cloud, 0.0, classes).empty());
+  EXPECT_TRUE(find_balls(places.round, cloud, view_from_above(), 0.0, classes).empty());
   EXPECT_EQ(classes.size(), 1U);
 }
 
 TEST(Ball, IsNoneAlongATube) {
   const FilteredCloud cloud = upper_half_of({{-0.1, 0, 0}, {0.0, 0, 0}, {0.08, 0.06, 0}});
-  const CurvedPlaces places = find_curved_places(cloud.points, cloud.normals, view_from_above(), cloud.spacing);
+  const CurvedPlaces places = curved_places_of(cloud);
   std::vector<TubeClass> classes;
-  EXPECT_TRUE(find_balls(places.round, cloud, 0.0, classes).empty());
+  EXPECT_TRUE(find_balls(places.round, cloud, view_from_above(), 0.0, classes).empty());
 }
 
 /// Few points of a tube, as downsampling leaves them, were taken for balls of a metre to 800 km.
@@ -99,14 +98,12 @@ TEST(Ball, IsNoneOnAFlatPatch) {
   FilteredCloud cloud{.source = {}, .points = {}, .normals = {}, .spacing = 0.001};
   Random random(7);
   for (double x = -0.01; x <= 0.01; x += 0.001)
-    for (double y = -0.01; y <= 0.01; y += 0.001) {
+    for (double y = -0.01; y <= 0.01; y += 0.001)
       cloud.points.push_back(Vec3(x, y, 1e-4 * random.normal()).cast<float>());
-      cloud.normals.push_back(Vec3(0, 0, 1).cast<float>());
-    }
   std::vector<TubeClass> classes;
   for (const double radius : {0.05, 0.1, 0.3, 1.0, 10.0}) {
     const std::vector<RoundPlace> round(4, {.center = {0, 0, -radius}, .radius = radius});
-    EXPECT_TRUE(find_balls(round, cloud, 1e-4, classes).empty()) << radius;
+    EXPECT_TRUE(find_balls(round, cloud, view_from_above(), 1e-4, classes).empty()) << radius;
   }
 }
 

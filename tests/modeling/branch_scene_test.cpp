@@ -10,6 +10,7 @@
 #include "modeling/fitting/branch_splitting.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
 #include "modeling/joining/branch_links.hpp"
+#include "modeling/input/normals.hpp"
 #include "tubebin/modeling/filtering.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 

@@ -6,11 +6,18 @@
 #include <vector>
 
 #include "modeling/built_scene.hpp"
+#include "modeling/input/normals.hpp"
+#include "modeling/input/radius_estimation.hpp"
 
 namespace tubebin::modeling {
 
 /// A scanner a metre above the origin that looks down.
 inline ViewProjection view_from_above() { return {make_pose(Quat(0, 1, 0, 0), {0, 0, 1}), cloud::Point::Zero()}; }
+
+/// Curved places by normals that are estimated from the cloud, whose tubes have such a radius (0: not known).
+inline CurvedPlaces curved_places_of(const FilteredCloud& cloud, double radius = 0.0) {
+  return find_curved_places(cloud, SurfaceNormals(cloud, view_from_above(), normal_radius(cloud.spacing, radius)));
+}
 
 /// The upper half of a tube's surface, sampled every 1.5 mm, without the joints' spheres.
 inline FilteredCloud upper_half_of(const std::vector<Vec3>& nodes, double radius = kRadius) {

@@ -7,6 +7,7 @@
 
 #include "modeling/built_surface.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
+#include "modeling/input/normals.hpp"
 #include "tubebin/modeling/filtering.hpp"
 
 namespace tubebin::modeling {

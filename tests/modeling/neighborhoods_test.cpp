@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 #include "modeling/built_surface.hpp"
 #include "modeling/fitting/end_growth.hpp"
@@ -47,6 +48,17 @@ cloud::Point plane_through_neighbors(const std::vector<cloud::Point>& points, st
   for (const Vec3& point : near) covariance += (point - mean) * (point - mean).transpose();
   const Vec3 normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(0);
   return (normal.z() < 0.0 ? Vec3(-normal) : normal).cast<float>();
+}
+
+FilteredCloud cloud_of(const std::vector<cloud::Point>& points) {
+  return {.source = std::vector<std::uint32_t>(points.size(), 7), .points = points, .normals = {}, .spacing = 0.001};
+}
+
+std::vector<cloud::Point> normals_of(const std::vector<cloud::Point>& points, double radius) {
+  std::vector<std::uint32_t> all(points.size());
+  std::iota(all.begin(), all.end(), 0U);
+  const FilteredCloud cloud = cloud_of(points);
+  return SurfaceNormals(cloud, view_from_above(), radius).at(all);
 }
 
 TEST(ViewProjection, OfManyPointsIsThatOfEach) {
@@ -92,7 +104,7 @@ TEST(RangeImage, TakesNoMoreCellsThanFitIntoMemory) {
 TEST(Normals, AreThoseOfAnEigensolver) {
   constexpr double kReach = 0.004;
   const HalfTube tube(3000);
-  const std::vector<cloud::Point> normals = estimate_normals(view_from_above(), tube.points, kReach);
+  const std::vector<cloud::Point> normals = normals_of(tube.points, kReach);
   for (std::size_t i = 0; i < tube.points.size(); i += 10) {
     ASSERT_NEAR(normals[i].norm(), 1.0f, 1e-5f);
     EXPECT_GT(normals[i].dot(plane_through_neighbors(tube.points, i, kReach)), 0.9995f);
@@ -103,40 +115,46 @@ TEST(Normals, AreThoseOfAnEigensolver) {
 TEST(Normals, AreZeroWhereNeighborsSpanNoPlane) {
   std::vector<cloud::Point> points = {{0.0f, 0.0f, 0.0f}, {0.001f, 0.0f, 0.0f}, {0.0f, 0.001f, 0.0f}};
   for (int i = 0; i < 20; ++i) points.emplace_back(0.1f + 0.0005f * static_cast<float>(i), 0.1f, 0.0f);
-  for (const cloud::Point& normal : estimate_normals(view_from_above(), points, 0.004)) EXPECT_TRUE(normal.isZero());
-  EXPECT_TRUE(estimate_normals(view_from_above(), {}, 0.004).empty());
+  for (const cloud::Point& normal : normals_of(points, 0.004)) EXPECT_TRUE(normal.isZero());
+  EXPECT_TRUE(normals_of({}, 0.004).empty());
 }
 
 TEST(Normals, OfAPartOfThePointsAreThoseThatAllOfThemGive) {
   const HalfTube tube(3000);
-  const std::vector<cloud::Point> all = estimate_normals(view_from_above(), tube.points, 0.004);
-  const std::vector<cloud::Point> part = estimate_normals(view_from_above(), tube.points, 0.004, 3);
-  ASSERT_EQ(part.size(), (all.size() + 2) / 3);
-  for (std::size_t i = 0; i < part.size(); ++i) EXPECT_LT((part[i] - all[3 * i]).norm(), 1e-5f);
+  const std::vector<cloud::Point> all = normals_of(tube.points, 0.004);
+  const FilteredCloud cloud = cloud_of(tube.points);
+  const std::vector<std::uint32_t> some = {2999, 7, 8, 1500, 7};
+  const std::vector<cloud::Point> part = SurfaceNormals(cloud, view_from_above(), 0.004).at(some);
+  ASSERT_EQ(part.size(), some.size());
+  for (std::size_t k = 0; k < part.size(); ++k) EXPECT_EQ(part[k], all[some[k]]);
 }
 
 TEST(Thinned, LeavesPointsAboutAsFarApartAsAsked) {
   const HalfTube tube(3000);
-  const FilteredCloud cloud{.source = std::vector<std::uint32_t>(tube.points.size(), 7),
-                            .points = tube.points,
-                            .normals = {},
-                            .spacing = 0.001};
-  const FilteredCloud same = thinned(cloud, 0.001, view_from_above(), kRadius);
+  const FilteredCloud cloud = cloud_of(tube.points);
+  const SurfaceNormals normals(cloud, view_from_above(), 0.004);
+  const FilteredCloud same = thinned(cloud, 0.001, normals);
   EXPECT_EQ(same.points, cloud.points);
-  const FilteredCloud sample = thinned(cloud, 0.002, view_from_above(), kRadius);
+  const FilteredCloud sample = thinned(cloud, 0.002, normals);
   EXPECT_EQ(sample.points.size(), (cloud.points.size() + 3) / 4);
   EXPECT_DOUBLE_EQ(sample.spacing, 0.002);
   EXPECT_EQ(sample.source.size(), sample.points.size());
   EXPECT_EQ(sample.normals.size(), sample.points.size());
 }
 
-TEST(Normals, CountTheNeighborsOfEachPoint) {
+TEST(Neighborhoods, HoldThePointsWithinTheReach) {
   constexpr double kReach = 0.003;
   const std::vector<cloud::Point> points = HalfTube(500).points;
   const std::vector<int> counts = count_neighbors(view_from_above(), points, kReach);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto within = [&](const cloud::Point& p) { return (p - points[i]).norm() <= static_cast<float>(kReach); };
-    EXPECT_EQ(counts[i], std::count_if(points.begin(), points.end(), within));
+  const FilteredCloud cloud = cloud_of(points);
+  const SurfaceNormals narrower(cloud, view_from_above(), 0.7 * kReach);
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    std::vector<std::uint32_t> within, found = narrower.around(i, kReach);
+    for (std::uint32_t k = 0; k < points.size(); ++k)
+      if ((points[k] - points[i]).norm() <= static_cast<float>(kReach)) within.push_back(k);
+    EXPECT_EQ(counts[i], within.size());
+    std::ranges::sort(found);
+    EXPECT_EQ(found, within);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "modeling/built_scene.hpp"
 #include "modeling/fitting/cylinder_ransac.hpp"
 #include "modeling/fitting/nearest_neighbors.hpp"
+#include "modeling/input/normals.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/modeling/region_growing.hpp"
 

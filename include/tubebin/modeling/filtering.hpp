@@ -37,13 +37,6 @@ FilteredCloud filter(const ModelingInput& input, const ViewProjection& projectio
 /// Where the scanner stood that saw most of the points at `indices`, metres. `first`: of the projection.
 Vec3 viewpoint_of(const FilteredCloud& cloud, std::span<const std::uint32_t> indices, const ViewProjection& first);
 
-/// Estimates the cloud's normals. `radius`: of the tubes, metres; 0 where it is not known.
-void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double radius);
-
-/// Every so many of the cloud's points, that they lie about `apart` metres from each other, or all where they already do,
-/// with normals: the cloud's, or, where it has none, from neighbours among all of its points. `radius`: of the tubes.
-FilteredCloud thinned(const FilteredCloud& cloud, double apart, const ViewProjection& projection, double radius);
-
 /// Radius of the neighbourhoods of normals, metres: large enough for some 25 points, which average the noise, where they
 /// lie within half a tube's radius and the surface is nearly flat; else for some 16, within 0.65 radii.
 double normal_radius(double spacing, double radius);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "modeling/input/normals.hpp"
 #include "modeling/sphere_fit.hpp"
 
 namespace tubebin::modeling {
@@ -34,13 +35,18 @@ Sphere mean_of(std::span<const RoundPlace> places) {
 /// Of the radius, metres.
 double error_of(const Sphere& sphere) { return std::sqrt(std::max(sphere.radius_variance, 0.0)); }
 
-/// Of some ten thousand of the cloud's points, those within `part` radii of the sphere's surface whose normals are the
-/// sphere's, more or less.
+/// Some ten thousand of the cloud's points, with normals as a tube of that radius lets estimate them.
+FilteredCloud sample_of(const FilteredCloud& cloud, const ViewProjection& projection, double radius) {
+  constexpr double kSample = 20'000.0;
+  const SurfaceNormals surface(cloud, projection, normal_radius(cloud.spacing, radius));
+  return thinned(cloud, cloud.spacing * std::sqrt(static_cast<double>(cloud.points.size()) / kSample), surface);
+}
+
+/// Points within `part` radii of the sphere's surface whose normals are the sphere's, more or less.
 std::vector<Vec3> points_about(const Sphere& sphere, double part, const FilteredCloud& cloud) {
-  constexpr std::size_t kSample = 20'000;
   constexpr double kSameDirection = 0.9;  // cosine
   std::vector<Vec3> about;
-  for (std::size_t i = 0; i < cloud.points.size(); i += cloud.points.size() / kSample + 1) {
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     const Vec3 point = cloud.points[i].cast<double>(), offset = point - sphere.center;
     const double distance = offset.norm();
     if (std::abs(distance - sphere.radius) < part * sphere.radius &&
@@ -88,16 +94,19 @@ bool is_of_ball(const TubePiece& piece, const TubePiece& ball) {
 
 }  // namespace
 
-std::vector<TubePiece> find_balls(std::vector<RoundPlace> round, const FilteredCloud& cloud, double noise,
-                                  std::vector<TubeClass>& classes) {
+std::vector<TubePiece> find_balls(std::vector<RoundPlace> round, const FilteredCloud& cloud,
+                                  const ViewProjection& projection, double noise, std::vector<TubeClass>& classes) {
   std::vector<TubePiece> balls;
+  std::optional<FilteredCloud> sample;
   while (!round.empty()) {
     const RoundPlace first = round.front();
     const auto others =
         std::stable_partition(round.begin(), round.end(), [&](const RoundPlace& place) { return agree(place, first); });
     const std::span<const RoundPlace> alike(round.begin(), others);
-    if (alike.size() >= kLeastPlaces)
-      if (const auto sphere = sphere_of(alike, cloud, noise)) balls.push_back(piece_of(*sphere));
+    if (alike.size() >= kLeastPlaces) {
+      if (!sample) sample = sample_of(cloud, projection, classes.empty() ? 0.0 : classes.front().radius);
+      if (const auto sphere = sphere_of(alike, *sample, noise)) balls.push_back(piece_of(*sphere));
+    }
     round.erase(round.begin(), others);
   }
   std::erase_if(balls, [&](const TubePiece& ball) {

@@ -92,7 +92,7 @@ std::vector<TubeClass> settled(const std::vector<PossibleClass>& possible) {
 
 class ClassFinder {
  public:
-  ClassFinder(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion, double noise,
+  ClassFinder(const FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion, double noise,
               bool background_is_known, const Vec3& up)
       : cloud_(cloud),
         projection_(projection),
@@ -103,7 +103,7 @@ class ClassFinder {
 
   TubeClasses find_told(const std::vector<double>& radii) {
     for (const double radius : radii) {
-      possible_.push_back(pieces_of(search(left(), radius), radius));
+      possible_.push_back(pieces_of(search(radius), radius));
       if (radii.size() > 1) set_aside(possible_.back().sure.pieces);
     }
     return {.classes = settled(possible_), .round = {}};
@@ -117,9 +117,9 @@ class ClassFinder {
       if (rest_ && rest_->points.size() < enough) break;
       // Rough ground shows all radii.
       if (!possible_.empty() && possible_.front().has_ground) break;
-      const double seen = likeliest_radius(left(), tried, enough);
+      const double seen = likeliest_radius(tried, enough);
       if (seen <= 0.0) break;
-      PossibleClass found = refined_class(left(), seen, tried);
+      PossibleClass found = refined_class(seen, tried);
       tried.push_back(found.sure.radius > 0.0 ? found.sure.radius : seen);
       set_aside(standing_);
       if (is_believed(found)) {
@@ -137,30 +137,36 @@ class ClassFinder {
   }
 
  private:
-  FilteredCloud& left() { return rest_ ? *rest_ : cloud_; }
+  const FilteredCloud& left() const { return rest_ ? *rest_ : cloud_; }
 
-  double reach(const FilteredCloud& cloud, double radius) const { return normal_radius(cloud.spacing, radius); }
+  /// Metres, of normals of what is left. `radius`: of the tubes; 0 where it is not known.
+  double reach(double radius) const { return normal_radius(left().spacing, radius); }
+
+  /// Of what is left, by the reach that is in use, or, at first, the radius' own.
+  const SurfaceNormals& normals(double radius) {
+    if (!normals_) normals_.emplace(left(), projection_, reach(radius));
+    return *normals_;
+  }
 
   /// The radius that most places of the surface show, of those that are not `tried` yet; 0 where fewer than `enough`
   /// points show one.
-  double likeliest_radius(FilteredCloud& cloud, const std::vector<double>& tried, std::size_t enough) {
-    if (cloud.normals.empty()) add_normals(cloud, projection_, 0.0);
-    CurvedPlaces places = find_curved_places(cloud.points, cloud.normals, projection_, cloud.spacing);
+  double likeliest_radius(const std::vector<double>& tried, std::size_t enough) {
+    CurvedPlaces places = find_curved_places(left(), normals(0.0));
     if (!rest_) round_ = std::move(places.round);
     const CommonRadius common = commonest_radius(places.radii, tried);
-    if (common.places < 10 || common.places * cloud.points.size() < enough * places.looked_at) return 0.0;
+    if (common.places < 10 || common.places * left().points.size() < enough * places.looked_at) return 0.0;
     return common.radius;
   }
 
   /// From the radius that places show to the one that the longest pieces show, and to all of its pieces. What tubes of a
   /// `tried` radius left over leads back to that one, and is not followed.
-  PossibleClass refined_class(FilteredCloud& cloud, double radius, const std::vector<double>& tried) {
+  PossibleClass refined_class(double radius, const std::vector<double>& tried) {
     for (int round = 0; round < 2; ++round) {
       // Where points are sparse, normals from as many as a known radius would not let in are too flat.
-      if (reach(cloud, radius) < 0.9 * reach(cloud, round == 0 ? 0.0 : 2.0 * radius))
-        cloud.normals = estimate_normals(projection_, cloud.points, reach(cloud, radius), 1, cloud.viewpoints);
+      if (reach(radius) < 0.9 * reach(round == 0 ? 0.0 : 2.0 * radius))
+        normals_.emplace(left(), projection_, reach(radius));
       // A quarter of a radius apart, a stretch of tube still has some ten votes in a voxel of segment_by_votes.
-      const FilteredCloud sample = without_ground(sample_of(cloud, radius / 4.0, radius), radius);
+      const FilteredCloud sample = without_ground(sample_of_left(radius / 4.0, radius), radius);
       const double refined = refined_radius(sample, radius, projection_, occlusion_.with_radius(radius));
       if (refined <= 0.0) return {};
       if (is_tried(refined, tried)) break;
@@ -168,13 +174,13 @@ class ClassFinder {
       radius = refined;
       if (is_settled) break;
     }
-    Search found = search(cloud, radius);
+    Search found = search(radius);
     if (found.has_ground) {
       // The longest pieces may have been ground, and the radius as well.
       const double own =
           radius_along(found.curves.curves, found.sample, radius, projection_, occlusion_.with_radius(radius));
       if (own <= 0.0) return {};
-      if (std::abs(own - radius) > 0.01 * radius && !is_tried(own, tried)) found = search(cloud, radius = own);
+      if (std::abs(own - radius) > 0.01 * radius && !is_tried(own, tried)) found = search(radius = own);
     }
     return pieces_of(std::move(found), radius);
   }
@@ -184,10 +190,10 @@ class ClassFinder {
     return found.evidence > std::max(kEnoughEvidence, share);
   }
 
-  /// Points `apart` metres from each other, or farther where they would be too many.
-  FilteredCloud sample_of(const FilteredCloud& cloud, double apart, double radius) const {
-    const double share = static_cast<double>(cloud.points.size()) / kMostPoints;
-    return thinned(cloud, std::max(apart, cloud.spacing * std::sqrt(share)), projection_, radius);
+  /// Points of what is left, `apart` metres from each other, or farther where they would be too many.
+  FilteredCloud sample_of_left(double apart, double radius) {
+    const double share = static_cast<double>(left().points.size()) / kMostPoints;
+    return thinned(left(), std::max(apart, left().spacing * std::sqrt(share)), normals(radius));
   }
 
   /// What is left where ground that is not flat has been taken away; all where the ground is known.
@@ -220,9 +226,9 @@ class ClassFinder {
     });
   }
 
-  Search search(const FilteredCloud& cloud, double radius) {
+  Search search(double radius) {
     // Points that lie closer together cost time and add nothing: these make 24 votes a voxel of segment_by_votes.
-    FilteredCloud sample = sample_of(cloud, radius / 6.0, radius);
+    FilteredCloud sample = sample_of_left(radius / 6.0, radius);
     const std::size_t sampled = sample.points.size();
     Search search{.sample = without_ground(std::move(sample), radius), .curves = {}};
     search.curves = find_curves(search.sample, segment_by_votes(search.sample, radius), radius);
@@ -289,17 +295,20 @@ class ClassFinder {
     for (const std::uint32_t i : unexplained_points(left().points, pieces, cloud_.spacing)) {
       rest.source.push_back(left().source[i]);
       rest.points.push_back(left().points[i]);
+      if (!left().viewpoints.empty()) rest.viewpoints.push_back(left().viewpoints[i]);
     }
+    normals_.reset();
     rest_ = std::move(rest);
   }
 
-  FilteredCloud& cloud_;
+  const FilteredCloud& cloud_;
   const ViewProjection& projection_;
   const OcclusionTest& occlusion_;
   double noise_;
   bool background_is_known_;
   Vec3 up_;
   std::optional<FilteredCloud> rest_;
+  std::optional<SurfaceNormals> normals_;  ///< of what is left
   std::vector<RoundPlace> round_;
   std::vector<TubePiece> standing_;
   std::vector<PossibleClass> possible_;  ///< of the radii so far
@@ -307,7 +316,7 @@ class ClassFinder {
 
 }  // namespace
 
-TubeClasses find_tube_classes(FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion,
+TubeClasses find_tube_classes(const FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion,
                               double noise, bool background_is_known, const Vec3& up, const std::vector<double>& told) {
   ClassFinder finder(cloud, projection, occlusion, noise, background_is_known, up);
   return told.empty() ? finder.find_all() : finder.find_told(told);

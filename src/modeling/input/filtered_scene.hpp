@@ -20,7 +20,6 @@ struct FilteredScene {
 };
 
 /// From where the scanner stood, as far as that is known. Throws IoError where a told bin or the box to crop to holds no point.
-/// The cloud has the normals that the search for radii begins with, or none.
 FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& options);
 
 }  // namespace tubebin::modeling

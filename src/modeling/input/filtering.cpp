@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "modeling/input/normals.hpp"
+#include "modeling/input/neighborhoods.hpp"
 #include "modeling/input/point_sample.hpp"
 #include "modeling/input/source_views.hpp"
 #include "modeling/input/view_grid.hpp"
@@ -140,31 +140,6 @@ Vec3 viewpoint_of(const FilteredCloud& cloud, std::span<const std::uint32_t> ind
     else counts.emplace_back(1, cloud.viewpoints[i]);
   }
   return std::ranges::max_element(counts, {}, [](const auto& count) { return count.first; })->second.cast<double>();
-}
-
-void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double radius) {
-  cloud.normals = estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, radius), 1, cloud.viewpoints);
-}
-
-FilteredCloud thinned(const FilteredCloud& cloud, double apart, const ViewProjection& projection, double radius) {
-  const double wanted = std::round(std::pow(apart / cloud.spacing, 2));
-  // Points in one place have no spacing.
-  const double stride_max = static_cast<double>(std::max<std::size_t>(cloud.points.size(), 1));
-  const auto stride = wanted >= 1.0 ? static_cast<std::size_t>(std::min(wanted, stride_max)) : std::size_t{1};
-  const auto select = [stride](const auto& all) {
-    std::remove_cvref_t<decltype(all)> selected;
-    for (std::size_t i = 0; i < all.size(); i += stride) selected.push_back(all[i]);
-    return selected;
-  };
-  FilteredCloud sample{.source = select(cloud.source),
-                       .points = select(cloud.points),
-                       .normals = select(cloud.normals),
-                       .spacing = cloud.spacing * std::sqrt(static_cast<double>(stride)),
-                       .viewpoints = select(cloud.viewpoints)};
-  if (cloud.normals.empty())
-    sample.normals =
-        estimate_normals(projection, cloud.points, normal_radius(cloud.spacing, radius), stride, cloud.viewpoints);
-  return sample;
 }
 
 }  // namespace tubebin::modeling

@@ -4,140 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <numeric>
 
 #include "core/lanes.hpp"
-#include "modeling/input/view_grid.hpp"
 #include "modeling/parallel.hpp"
-
-// The sums over neighbours are the most of the modeler's arithmetic, hence TUBEBIN_WIDE.
 
 namespace tubebin::modeling {
 namespace {
-
-/// Sums over neighbours q of a point p, of d = q - p.
-struct Moments {
-  float count = 0.0f, x = 0.0f, y = 0.0f, z = 0.0f;
-  float xx = 0.0f, xy = 0.0f, xz = 0.0f, yy = 0.0f, yz = 0.0f, zz = 0.0f;
-};
-
-/// Positions [first, last) in the arrays below.
-using Run = std::pair<std::uint32_t, std::uint32_t>;
-
-/// Coordinates in grid order, one array each, so that a row of cells is one run of memory.
-struct SortedPoints {
-  std::vector<float> x, y, z;
-
-  SortedPoints(std::span<const cloud::Point> points, const std::vector<std::uint32_t>& order) {
-    for (auto* coordinates : {&x, &y, &z}) coordinates->resize(order.size() + kLanes, 0.0f);
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      x[k] = points[order[k]].x();
-      y[k] = points[order[k]].y();
-      z[k] = points[order[k]].z();
-    }
-  }
-};
-
-/// Eight neighbours at a time without a branch; the arrays' padding, and what follows a run, is masked out.
-TUBEBIN_WIDE void add_runs(const SortedPoints& points, std::span<const Run> runs, const cloud::Point& center,
-                           float squared_radius, Moments& moments) {
-  const Lanes zero = {};
-  const Mask lane = {0, 1, 2, 3, 4, 5, 6, 7};
-  const Lanes center_x = zero + center.x(), center_y = zero + center.y(), center_z = zero + center.z();
-  Mask count = {};
-  Lanes x = zero, y = zero, z = zero, xx = zero, xy = zero, xz = zero, yy = zero, yz = zero, zz = zero;
-  for (const auto& [first, last] : runs)
-    for (std::uint32_t k = first; k < last; k += kLanes) {
-      Lanes dx, dy, dz;
-      load(dx, &points.x[k]), load(dy, &points.y[k]), load(dz, &points.z[k]);
-      dx -= center_x, dy -= center_y, dz -= center_z;
-      const Mask near = (dx * dx + dy * dy + dz * dz <= squared_radius) & (lane < static_cast<std::int32_t>(last - k));
-      const Lanes wx = (Lanes)((Mask)dx & near), wy = (Lanes)((Mask)dy & near), wz = (Lanes)((Mask)dz & near);
-      count -= near;  // true is -1
-      x += wx, y += wy, z += wz;
-      xx += wx * dx, xy += wx * dy, xz += wx * dz, yy += wy * dy, yz += wy * dz, zz += wz * dz;
-    }
-  for (std::uint32_t k = 0; k < kLanes; ++k) moments.count += static_cast<float>(count[k]);
-  moments.x += sum_of(x), moments.y += sum_of(y), moments.z += sum_of(z);
-  moments.xx += sum_of(xx), moments.xy += sum_of(xy), moments.xz += sum_of(xz);
-  moments.yy += sum_of(yy), moments.yz += sum_of(yz), moments.zz += sum_of(zz);
-}
-
-/// The points' neighbours in space, found in the scanner's view.
-class Neighborhoods {
- public:
-  Neighborhoods(const ViewProjection& projection, std::span<const cloud::Point> points, double radius)
-      : points_(points),
-        radius_(static_cast<float>(radius)),
-        cell_(0.5f * radius_ / std::max(nearest_range(projection, points), radius_)),
-        grid_(projection, points, cell_),
-        sorted_(points, grid_.order()) {}
-
-  /// In which one point's neighbours are mostly the next one's.
-  const std::vector<std::uint32_t>& order() const { return grid_.order(); }
-
-  /// A part of the view, and the points in it.
-  class Window {
-   public:
-    explicit Window(const Neighborhoods& all) : all_(all) {}
-
-    /// Of the points within the radius, `wider` times, of point i, in the part of the view that the radius covers. The next point
-    /// is mostly in the same one.
-    Moments around(std::size_t i, float wider) {
-      look_at(i);
-      Moments moments;
-      add_runs(all_.sorted_, runs_, all_.points_[i], wider * wider * all_.radius_ * all_.radius_, moments);
-      return moments;
-    }
-
-   private:
-    void look_at(std::size_t i) {
-      const ViewProjection::Image image = all_.grid_.image(i);
-      // A radian is 1 + (u^2 + v^2) / 4 units of the stereographic plane.
-      const float units =
-          all_.radius_ / std::max(image.range, all_.radius_) * (1.0f + 0.25f * (image.u * image.u + image.v * image.v));
-      const Place place{all_.grid_.row(i), all_.grid_.column(i), reach_of(units / all_.cell_)};
-      if (place == place_) return;
-      place_ = place;
-      const auto [middle_row, column, reach] = place;
-      runs_.clear();
-      for (int row = middle_row - reach; row <= middle_row + reach; ++row)
-        if (const Run run = all_.grid_.range(row, column - reach, column + reach); run.first < run.second)
-          runs_.push_back(run);
-    }
-
-    struct Place {
-      int row = 0, column = 0, reach = -1;
-      bool operator==(const Place&) const = default;
-    };
-
-    const Neighborhoods& all_;
-    Place place_;            ///< of the point last looked at
-    std::vector<Run> runs_;  ///< of the points in it
-  };
-
- private:
-  static float nearest_range(const ViewProjection& projection, std::span<const cloud::Point> points) {
-    float squared = std::numeric_limits<float>::infinity();
-    for (const cloud::Point& point : points)
-      squared = std::min(squared, (point - projection.viewpoint()).squaredNorm());
-    return std::sqrt(squared);
-  }
-
-  /// Beyond the widest grid there are no cells; and a ratio that is not finite reaches all of them.
-  static int reach_of(float cells) {
-    constexpr float kReachMax = 1 << 24;
-    return cells < kReachMax ? static_cast<int>(std::ceil(cells)) : static_cast<int>(kReachMax);
-  }
-
-  std::span<const cloud::Point> points_;
-  float radius_;
-  /// Half the radius, as seen at the nearest range: the disc covers most of the 5 x 5 cells searched there, and fewer
-  /// of them farther away.
-  float cell_;
-  ViewGrid grid_;
-  SortedPoints sorted_;
-};
 
 /// So many planes at a time.
 constexpr std::size_t kPlanes = 4;
@@ -187,57 +60,71 @@ TUBEBIN_WIDE void plane_normals(const std::array<Moments, kPlanes>& moments,
   }
 }
 
+/// Indices of every so many of the cloud's points.
+std::vector<std::uint32_t> every(std::size_t stride, const FilteredCloud& cloud) {
+  std::vector<std::uint32_t> indices;
+  for (std::size_t i = 0; i < cloud.points.size(); i += stride) indices.push_back(static_cast<std::uint32_t>(i));
+  return indices;
+}
+
 }  // namespace
 
-std::vector<cloud::Point> estimate_normals(const ViewProjection& projection, std::span<const cloud::Point> points,
-                                           double radius, std::size_t stride,
-                                           std::span<const cloud::Point> viewpoints) {
-  std::vector<cloud::Point> normals((points.size() + stride - 1) / stride, cloud::Point::Zero());
-  if (points.empty()) return normals;
-  const Neighborhoods neighborhoods(projection, points, radius);
-  std::vector<std::uint32_t> left = neighborhoods.order();
-  std::erase_if(left, [&](std::uint32_t i) { return i % stride != 0; });
+SurfaceNormals::SurfaceNormals(const FilteredCloud& cloud, const ViewProjection& projection, double radius)
+    : cloud_(cloud), projection_(projection), radius_(radius), neighborhoods_(projection, cloud.points, radius) {}
+
+std::vector<cloud::Point> SurfaceNormals::at(std::span<const std::uint32_t> indices) const {
+  std::vector<cloud::Point> normals(indices.size(), cloud::Point::Zero());
+  std::vector<std::uint32_t> left(indices.size());  // positions in `indices`
+  std::iota(left.begin(), left.end(), 0U);
   // Where the surface is seen at a flat angle, rows of points that are neighbours in the view lie far apart in space:
   // a wider ball about the same part of the view finds them.
   for (float wider = 1.0f; wider <= 4.0f; wider *= 2.0f) {
     for_ranges_in_parallel(left.size(), [&](std::size_t begin, std::size_t end) {
-      Neighborhoods::Window window(neighborhoods);
+      Neighborhoods::Window window(neighborhoods_, radius_);
       std::array<Moments, kPlanes> moments;
       std::array<cloud::Point, kPlanes> to_viewpoint, found;
       for (std::size_t first = begin; first < end; first += kPlanes) {
         const std::size_t count = std::min(kPlanes, end - first);
         for (std::size_t k = 0; k < kPlanes; ++k) {
-          const std::uint32_t i = left[first + std::min(k, count - 1)];
-          moments[k] = window.around(i, wider);
-          to_viewpoint[k] = viewpoint_of(i, viewpoints, projection) - points[i];
+          const std::uint32_t i = indices[left[first + std::min(k, count - 1)]];
+          moments[k] = window.moments_around(i, wider);
+          to_viewpoint[k] = viewpoint_of(i, cloud_.viewpoints, projection_) - cloud_.points[i];
         }
         plane_normals(moments, to_viewpoint, found);
-        for (std::size_t k = 0; k < count; ++k) normals[left[first + k] / stride] = found[k];
+        for (std::size_t k = 0; k < count; ++k) normals[left[first + k]] = found[k];
       }
     });
-    std::erase_if(left, [&](std::uint32_t i) { return !normals[i / stride].isZero(); });
+    std::erase_if(left, [&](std::uint32_t k) { return !normals[k].isZero(); });
   }
   return normals;
 }
 
-std::vector<int> count_neighbors(const ViewProjection& projection, std::span<const cloud::Point> points,
-                                 double radius) {
-  std::vector<int> counts(points.size(), 0);
-  const Neighborhoods neighborhoods(projection, points, radius);
-  for_ranges_in_parallel(points.size(), [&](std::size_t first, std::size_t last) {
-    Neighborhoods::Window window(neighborhoods);
-    for (const std::uint32_t i : std::span(neighborhoods.order()).subspan(first, last - first))
-      counts[i] = static_cast<int>(window.around(i, 1.0f).count);
-  });
-  return counts;
+std::vector<std::uint32_t> SurfaceNormals::around(std::uint32_t point, double reach) const {
+  return Neighborhoods::Window(neighborhoods_, reach).points_around(point);
 }
 
-std::vector<bool> lie_alone(const ViewProjection& projection, std::span<const cloud::Point> points, double spacing) {
-  // Within three spacings lie some 28 points of a surface, half of them at its edges.
-  constexpr int kLeast = 9;
-  std::vector<bool> alone;
-  for (const int count : count_neighbors(projection, points, 3.0 * spacing)) alone.push_back(count < kLeast);
-  return alone;
+void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double radius) {
+  const SurfaceNormals surface(cloud, projection, normal_radius(cloud.spacing, radius));
+  cloud.normals = surface.at(every(1, cloud));
+}
+
+FilteredCloud thinned(const FilteredCloud& cloud, double apart, const SurfaceNormals& normals) {
+  const double wanted = std::round(std::pow(apart / cloud.spacing, 2));
+  // Points in one place have no spacing.
+  const double stride_max = static_cast<double>(std::max<std::size_t>(cloud.points.size(), 1));
+  const auto stride = wanted >= 1.0 ? static_cast<std::size_t>(std::min(wanted, stride_max)) : std::size_t{1};
+  const std::vector<std::uint32_t> selected = every(stride, cloud);
+  const auto select = [&](const auto& all) {
+    std::remove_cvref_t<decltype(all)> some;
+    if (!all.empty())
+      for (const std::uint32_t i : selected) some.push_back(all[i]);
+    return some;
+  };
+  return {.source = select(cloud.source),
+          .points = select(cloud.points),
+          .normals = normals.at(selected),
+          .spacing = cloud.spacing * std::sqrt(static_cast<double>(stride)),
+          .viewpoints = select(cloud.viewpoints)};
 }
 
 }  // namespace tubebin::modeling

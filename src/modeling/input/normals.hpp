@@ -1,25 +1,39 @@
-/// Surface normals and densities from the neighbours of each point.
+/// Surface normals from the neighbours of each point.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "tubebin/modeling/scan_view.hpp"
+#include "modeling/input/neighborhoods.hpp"
+#include "tubebin/modeling/filtering.hpp"
 
 namespace tubebin::modeling {
 
-/// Unit normals toward the viewpoint by least-squares planes through the neighbours within `radius` metres; zero where
-/// a point has fewer than five neighbours or they do not span a plane. Of every stride-th point, beginning with the
-/// first, from its neighbours among all points. `viewpoints`: of each point; none: all the projection's.
-std::vector<cloud::Point> estimate_normals(const ViewProjection& projection, std::span<const cloud::Point> points,
-                                           double radius, std::size_t stride = 1,
-                                           std::span<const cloud::Point> viewpoints = {});
+/// Normals of a cloud's surface at the points that are asked for: few are needed where points lie close together.
+class SurfaceNormals {
+ public:
+  /// From the neighbours within `radius` metres among all of the cloud's points. The cloud has to outlive it, unchanged.
+  SurfaceNormals(const FilteredCloud& cloud, const ViewProjection& projection, double radius);
 
-/// Points within `radius` metres of each point, itself included.
-std::vector<int> count_neighbors(const ViewProjection& projection, std::span<const cloud::Point> points, double radius);
+  double radius() const { return radius_; }
+  /// Unit normals of the points at `indices`, toward the viewpoint that saw each, by least-squares planes; zero where a point
+  /// has fewer than five neighbours or they do not span a plane. Fastest in the order of the scanner's view.
+  std::vector<cloud::Point> at(std::span<const std::uint32_t> indices) const;
+  /// Indices of the points within `reach` metres of the point, itself among them.
+  std::vector<std::uint32_t> around(std::uint32_t point, double reach) const;
 
-/// Whether each point has fewer than a third of the neighbours that a surface, whose points lie `spacing` metres apart, lets
-/// expect.
-std::vector<bool> lie_alone(const ViewProjection& projection, std::span<const cloud::Point> points, double spacing);
+ private:
+  const FilteredCloud& cloud_;
+  ViewProjection projection_;
+  double radius_;
+  Neighborhoods neighborhoods_;
+};
+
+/// Estimates the normals of all of the cloud's points. `radius`: of the tubes, metres; 0 where it is not known.
+void add_normals(FilteredCloud& cloud, const ViewProjection& projection, double radius);
+
+/// Every so many of the cloud's points, that they lie about `apart` metres from each other, or all where they already do,
+/// with normals.
+FilteredCloud thinned(const FilteredCloud& cloud, double apart, const SurfaceNormals& normals);
 
 }  // namespace tubebin::modeling

@@ -3,31 +3,41 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "modeling/input/view_grid.hpp"
-#include "modeling/median.hpp"
+#include "modeling/parallel.hpp"
 #include "modeling/sphere_fit.hpp"
 
 namespace tubebin::modeling {
 namespace {
 
-/// The principal curvatures at a point, ascending: the symmetric 2 x 2 map from tangent offsets to changes of the normal, by
-/// least squares over its neighbours. Zeros where these are too few to tell.
-Eigen::Vector2d principal_curvatures(const cloud::Point& p, const cloud::Point& n,
-                                     const std::vector<std::pair<cloud::Point, cloud::Point>>& neighbors) {
+/// Principal curvatures at a point, 1 / metres, ascending.
+struct Curvatures {
+  double least = 0.0, most = 0.0;
+};
+
+/// The symmetric 2 x 2 map from tangent offsets to changes of the normal `n`, by least squares over the point's neighbours within
+/// four spacings, about fifty of them. Zeros where these are too few to tell.
+Curvatures curvatures_at(std::uint32_t point, const cloud::Point& n, const FilteredCloud& cloud,
+                         const SurfaceNormals& surface) {
+  const std::vector<std::uint32_t> neighbors = surface.around(point, 4.0 * cloud.spacing);
+  const std::vector<cloud::Point> normals = surface.at(neighbors);
   const cloud::Point u = n.unitOrthogonal();
   const cloud::Point v = n.cross(u);
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero(), turn = Eigen::Matrix2d::Zero();
-  for (const auto& [q, m] : neighbors) {
-    const Eigen::Vector2d offset(double((q - p).dot(u)), double((q - p).dot(v)));
-    const Eigen::Vector2d change(double((m - n).dot(u)), double((m - n).dot(v)));
+  int count = 0;
+  for (std::size_t k = 0; k < neighbors.size(); ++k) {
+    if (normals[k].dot(n) <= 0.5f) continue;
+    const cloud::Point q = cloud.points[neighbors[k]] - cloud.points[point], m = normals[k] - n;
+    const Eigen::Vector2d offset(double(q.dot(u)), double(q.dot(v))), change(double(m.dot(u)), double(m.dot(v)));
     scatter += offset * offset.transpose();
     turn += change * offset.transpose();
+    ++count;
   }
-  if (neighbors.size() < 6 || scatter.determinant() <= 0.0) return Eigen::Vector2d::Zero();
+  if (count < 6 || scatter.determinant() <= 0.0) return {};
   const Eigen::Matrix2d shape = turn * scatter.inverse();
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(0.5 * (shape + shape.transpose())).eigenvalues();
+  const Eigen::Vector2d principal =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(0.5 * (shape + shape.transpose())).eigenvalues();
+  return {.least = principal(0), .most = principal(1)};
 }
 
 /// A radius and how much it counts: 1 / variance.
@@ -75,38 +85,23 @@ double weighted_median(std::vector<MeasuredRadius> radii) {
 
 }  // namespace
 
-CurvedPlaces find_curved_places(const std::vector<cloud::Point>& points, const std::vector<cloud::Point>& normals,
-                                const ViewProjection& projection, double spacing) {
-  if (points.empty()) return {};
-  // Some hundred places show what is common. Neighbours within four spacings, about fifty of them.
-  constexpr std::size_t kPlaces = 600;
-  const std::size_t stride = points.size() / kPlaces + 1;
-  const double reach = 4.0 * spacing;
-  const auto squared_reach = static_cast<float>(reach * reach);
-  float nearest = std::numeric_limits<float>::infinity();
-  for (std::size_t i = 0; i < points.size(); i += stride)
-    nearest = std::min(nearest, (points[i] - projection.viewpoint()).norm());
-  const ViewGrid grid(projection, points, static_cast<float>(reach / std::max(double(nearest), reach)));
-  CurvedPlaces places;
-  for (std::size_t i = 0; i < points.size(); i += stride) {
-    ++places.looked_at;
-    if (normals[i].isZero()) continue;
-    std::vector<std::pair<cloud::Point, cloud::Point>> neighbors;
-    for (int row = grid.row(i) - 1; row <= grid.row(i) + 1; ++row) {
-      const auto [first, last] = grid.range(row, grid.column(i) - 1, grid.column(i) + 1);
-      for (std::uint32_t k = first; k < last; ++k) {
-        const std::uint32_t j = grid.order()[k];
-        if ((points[j] - points[i]).squaredNorm() < squared_reach && normals[j].dot(normals[i]) > 0.5f)
-          neighbors.emplace_back(points[j], normals[j]);
-      }
-    }
-    const Eigen::Vector2d curvatures = principal_curvatures(points[i], normals[i], neighbors);
-    const double least = curvatures(0), most = curvatures(1);
+CurvedPlaces find_curved_places(const FilteredCloud& cloud, const SurfaceNormals& surface) {
+  constexpr std::size_t kPlaces = 600;  // some hundred show what is common
+  std::vector<std::uint32_t> looked_at;
+  for (std::size_t i = 0; i < cloud.points.size(); i += cloud.points.size() / kPlaces + 1)
+    looked_at.push_back(static_cast<std::uint32_t>(i));
+  const std::vector<cloud::Point> normals = surface.at(looked_at);
+  const std::vector<Curvatures> curvatures = map_in_parallel(looked_at.size(), [&](std::size_t k) {
+    return normals[k].isZero() ? Curvatures{} : curvatures_at(looked_at[k], normals[k], cloud, surface);
+  });
+  CurvedPlaces places{.radii = {}, .round = {}, .looked_at = looked_at.size()};
+  for (std::size_t k = 0; k < looked_at.size(); ++k) {
+    const auto [least, most] = curvatures[k];
     if (most > 0.0 && std::abs(least) < 0.3 * most) places.radii.push_back(1.0 / most);
     if (least < 0.0 && std::abs(most) < -0.3 * least) ++places.hollow;
     if (least > 0.6 * most) {
       const double radius = 2.0 / (least + most);
-      places.round.push_back({points[i].cast<double>() - radius * normals[i].cast<double>(), radius});
+      places.round.push_back({cloud.points[looked_at[k]].cast<double>() - radius * normals[k].cast<double>(), radius});
     }
   }
   return places;

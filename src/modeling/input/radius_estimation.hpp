@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tubebin/modeling/scan_view.hpp"
+#include "modeling/input/normals.hpp"
 #include "tubebin/modeling/tube_model.hpp"
 
 namespace tubebin::modeling {
@@ -22,8 +22,7 @@ struct CurvedPlaces {
   std::size_t hollow = 0;  ///< that curve like the inside of a cylinder
   std::size_t looked_at = 0;
 };
-CurvedPlaces find_curved_places(const std::vector<cloud::Point>& points, const std::vector<cloud::Point>& normals,
-                                const ViewProjection& projection, double spacing);
+CurvedPlaces find_curved_places(const FilteredCloud& cloud, const SurfaceNormals& surface);
 
 /// A radius, metres, and how many places show it.
 struct CommonRadius {

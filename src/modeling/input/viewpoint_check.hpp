@@ -18,7 +18,7 @@ struct ViewpointCheck {
 /// looked at.
 ViewpointCheck check_viewpoint(ModelingInput& input);
 
-/// Whether the surface clearly curves inward more often than outward: that of tubes is seen from outside. `cloud` has normals.
+/// Whether the surface clearly curves inward more often than outward: that of tubes is seen from outside.
 bool is_seen_from_behind(const FilteredCloud& cloud, const ViewProjection& projection);
 
 /// Moves the viewpoint to the other side of the cloud.
