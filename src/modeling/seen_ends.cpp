@@ -4,13 +4,14 @@
 #include <cmath>
 #include <optional>
 
+#include "modeling/labeling.hpp"
 #include "tubebin/modeling/filtering.hpp"
 
 namespace tubebin::modeling {
 namespace {
 
 /// Radii.
-constexpr double kFarthest = 2.5, kGap = 0.25, kWide = 1.1;
+constexpr double kFarthest = 2.5, kGap = 0.25, kWide = 1.1, kAround = 1.5;
 /// Of the points that an end seen straight on has; a wire, a rim or strays are fewer.
 constexpr double kLeastPart = 0.25;
 
@@ -63,7 +64,7 @@ std::optional<double> seen_from_the_front(const PathEnd& end, double radius, dou
 /// few points or other things are there.
 std::optional<double> seen_again(const PathEnd& end, double radius, double spacing, double missing,
                                  const std::vector<Vec3>& points) {
-  constexpr double kOnSide = 0.15, kAround = 1.5;  // radii
+  constexpr double kOnSide = 0.15;  // radii
   const std::vector<PlaceBeyond> places = places_beyond(end, missing + radius / 2.0, kAround * radius, points);
   if (places.empty()) return std::nullopt;
   double on_side = 0.0, others = 0.0, farthest = 0.0;
@@ -86,13 +87,31 @@ double missing_length(const TubeModel& tube, const std::vector<double>& lengths)
   return tube.paths.size() == 1 && longer != lengths.end() ? *longer - tube.length() : 0.0;
 }
 
+/// Points without a label that are no farther from a tube's end than the tube may reach beyond it.
+std::vector<Vec3> unlabeled_about_ends(const std::vector<TubeModel>& tubes, std::span<const cloud::Point> points,
+                                       std::span<const cloud::Label> labels, const std::vector<double>& lengths) {
+  std::vector<TubeSurface> balls;
+  for (const TubeModel& tube : tubes) {
+    const double reach = std::max(kFarthest * tube.radius, missing_length(tube, lengths) + tube.radius / 2.0);
+    for (const TubePath& path : tube.paths)
+      for (const Vec3* tip : {&path.nodes.front(), &path.nodes.back()})
+        balls.push_back({.nodes = {tip, 1}, .radius = reach + kAround * tube.radius});
+  }
+  std::vector<cloud::Point> unlabeled;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (labels[i] == 0) unlabeled.push_back(points[i]);
+  const std::vector<char> is_near = within_surfaces(unlabeled, balls, 0.0);
+  std::vector<Vec3> near;
+  for (std::size_t k = 0; k < unlabeled.size(); ++k)
+    if (is_near[k]) near.push_back(unlabeled[k].cast<double>());
+  return near;
+}
+
 }  // namespace
 
 bool reach_seen_ends(std::vector<TubeModel>& tubes, std::span<const cloud::Point> points,
                      std::span<const cloud::Label> labels, double spacing, const std::vector<double>& lengths) {
-  std::vector<Vec3> unlabeled;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (labels[i] == 0) unlabeled.push_back(points[i].cast<double>());
+  const std::vector<Vec3> unlabeled = unlabeled_about_ends(tubes, points, labels, lengths);
   bool any = false;
   for (TubeModel& tube : tubes)
     for (TubePath& path : tube.paths)

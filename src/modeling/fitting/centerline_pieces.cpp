@@ -8,6 +8,7 @@
 #include "modeling/fitting/end_growth.hpp"
 #include "modeling/fitting/flat_ends.hpp"
 #include "modeling/fitting/piece_cleaning.hpp"
+#include "modeling/input/normals.hpp"
 #include "modeling/parallel.hpp"
 #include "tubebin/modeling/filtering.hpp"
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "modeling/labeling.hpp"
+#include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -181,11 +182,12 @@ std::vector<Vec3> axis_of_flat_end(std::span<const SurfacePoint> surface, double
 void fit_flat_ends(std::vector<TubePiece>& pieces, const FilteredCloud& cloud, const FilteredCloud& unexplained) {
   if (unexplained.points.empty()) return;
   const UnexplainedPoints points(unexplained);
-  for (TubePiece& piece : pieces)
+  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t k) {
     for (int end = 0; end < 2; ++end) {
-      fit_last_end(piece, cloud, points);
-      std::reverse(piece.nodes.begin(), piece.nodes.end());
+      fit_last_end(pieces[k], cloud, points);
+      std::ranges::reverse(pieces[k].nodes);
     }
+  });
 }
 
 }  // namespace tubebin::modeling

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "modeling/parallel.hpp"
+
 namespace tubebin::modeling {
 namespace {
 
@@ -75,15 +77,20 @@ std::uint32_t VoteVoxels::find_or_add(const Key& key) {
 std::uint32_t VoteVoxels::find(const Key& key) const { return table_[slot_of(key)]; }
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> VoteVoxels::links(double link) const {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  constexpr std::uint32_t kAtOnce = 4096;
+  const auto count = static_cast<std::uint32_t>(keys_.size());
   const auto squared = static_cast<float>(link * link);
-  for (std::uint32_t i = 0; i < keys_.size(); ++i)
-    for (int offset = 14; offset < 27; ++offset) {  // half of the 3 x 3 x 3 cube about cell 13
-      const std::uint32_t j =
-          find({keys_[i].x + offset / 9 - 1, keys_[i].y + offset / 3 % 3 - 1, keys_[i].z + offset % 3 - 1});
-      if (j != kNone && (means_[i] - means_[j]).squaredNorm() <= squared) pairs.emplace_back(i, j);
-    }
-  return pairs;
+  return gather_in_parallel((count + kAtOnce - 1) / kAtOnce, [&](std::size_t part) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    const std::uint32_t first = static_cast<std::uint32_t>(part) * kAtOnce;
+    for (std::uint32_t i = first; i < std::min(first + kAtOnce, count); ++i)
+      for (int offset = 14; offset < 27; ++offset) {  // half of the 3 x 3 x 3 cube about cell 13
+        const std::uint32_t j =
+            find({keys_[i].x + offset / 9 - 1, keys_[i].y + offset / 3 % 3 - 1, keys_[i].z + offset % 3 - 1});
+        if (j != kNone && (means_[i] - means_[j]).squaredNorm() <= squared) pairs.emplace_back(i, j);
+      }
+    return pairs;
+  });
 }
 
 double VoteVoxels::spread(std::uint32_t voxel) const {
