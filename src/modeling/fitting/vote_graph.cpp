@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <queue>
 #include <utility>
 
 #include "modeling/fitting/vote_voxels.hpp"
@@ -30,8 +29,8 @@ std::uint32_t farthest(const std::vector<double>& distance, std::uint32_t from) 
 
 }  // namespace
 
-VoteGraph::VoteGraph(const FilteredCloud& cloud, const Segment& segment, double radius) {
-  const VoteVoxels voxels(votes_of(cloud, segment, radius), radius / 3.0, 1);
+VoteGraph::VoteGraph(const FilteredCloud& cloud, const Segment& segment, double radius) : voxel_(radius / 3.0) {
+  const VoteVoxels voxels(votes_of(cloud, segment, radius), voxel_, 1);
   for (std::size_t i = 0; i < voxels.size(); ++i) {
     means_.push_back(voxels.mean(i));
     counts_.push_back(voxels.count(i));
@@ -57,6 +56,7 @@ std::vector<VoteGraph> VoteGraph::divided(std::span<const std::uint32_t> part_of
   for (const std::uint32_t i : voxel_of_) points[part_of_voxel[i]].push_back(place[i]);
   return map_in_parallel(parts, [&](std::size_t part) {
     VoteGraph graph;
+    graph.voxel_ = voxel_;
     graph.voxel_of_ = std::move(points[part]);
     for (const std::uint32_t i : voxels[part]) {
       graph.means_.push_back(mean(i));
@@ -81,23 +81,24 @@ void VoteGraph::find_end() {
 
 std::vector<double> VoteGraph::distances_from(std::span<const std::uint32_t> sources) const {
   std::vector<double> distance(size(), std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, std::uint32_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  std::vector<std::vector<std::pair<double, std::uint32_t>>> queue(1);  // by distance, so many voxels' widths far
   for (const std::uint32_t source : sources) {
     distance[source] = 0.0;
-    queue.emplace(0.0, source);
+    queue.front().emplace_back(0.0, source);
   }
-  while (!queue.empty()) {
-    const auto [d, i] = queue.top();
-    queue.pop();
-    if (d > distance[i]) continue;
-    for (const std::uint32_t j : linked(i)) {
-      const double through = d + double((mean(i) - mean(j)).norm());
-      if (through >= distance[j]) continue;
-      distance[j] = through;
-      queue.emplace(through, j);
+  for (std::size_t far = 0; far < queue.size(); ++far)
+    for (std::size_t k = 0; k < queue[far].size(); ++k) {
+      const auto [d, i] = queue[far][k];
+      if (d > distance[i]) continue;
+      for (const std::uint32_t j : linked(i)) {
+        const double through = d + double((mean(i) - mean(j)).norm());
+        if (through >= distance[j]) continue;
+        distance[j] = through;
+        const auto place = static_cast<std::size_t>(through / voxel_);
+        if (place >= queue.size()) queue.resize(place + 1);
+        queue[place].emplace_back(through, j);
+      }
     }
-  }
   return distance;
 }
 

@@ -40,6 +40,7 @@ class VoteGraph {
  private:
   void find_end();
 
+  double voxel_ = 0.0;  ///< width, metres
   std::vector<cloud::Point> means_;
   std::vector<std::size_t> counts_;
   std::vector<std::uint32_t> voxel_of_;
