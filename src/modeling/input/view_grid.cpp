@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "modeling/median.hpp"
+#include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -56,26 +57,31 @@ ViewGrid::ViewGrid(ViewProjection::Images images, std::span<const cloud::Point> 
   columns_ = static_cast<std::uint32_t>((extent.u_max - extent.u_min) / cell) + 1;
   rows_ = static_cast<std::uint32_t>((extent.v_max - extent.v_min) / cell) + 1;
 
+  cells_.resize(points.size());
+  for_ranges_in_parallel(points.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const auto column = static_cast<std::uint32_t>((images_.u[i] - extent.u_min) / cell);
+      const auto row = static_cast<std::uint32_t>((images_.v[i] - extent.v_min) / cell);
+      cells_[i] = std::min(row, rows_ - 1) * columns_ + std::min(column, columns_ - 1);
+    }
+  });
   starts_.assign(std::size_t{columns_} * rows_ + 1, 0);
-  cells_.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto column = static_cast<std::uint32_t>((images_.u[i] - extent.u_min) / cell);
-    const auto row = static_cast<std::uint32_t>((images_.v[i] - extent.v_min) / cell);
-    cells_.push_back(std::min(row, rows_ - 1) * columns_ + std::min(column, columns_ - 1));
-    ++starts_[cells_.back() + 1];
-  }
+  for (const std::uint32_t c : cells_) ++starts_[c + 1];
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
 
   order_.resize(points.size());
   std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
   for (std::uint32_t i = 0; i < points.size(); ++i) order_[next[cells_[i]]++] = i;
-  for (std::size_t c = 0; c + 1 < starts_.size(); ++c)
-    if (starts_[c + 1] - starts_[c] > 1)
-      std::sort(order_.begin() + starts_[c], order_.begin() + starts_[c + 1], [&](std::uint32_t a, std::uint32_t b) {
-        const cloud::Point& p = points[a];
-        const cloud::Point& q = points[b];
-        return std::tuple(p.x(), p.y(), p.z(), a) < std::tuple(q.x(), q.y(), q.z(), b);
-      });
+  const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
+    const cloud::Point& p = points[a];
+    const cloud::Point& q = points[b];
+    return std::tuple(p.x(), p.y(), p.z(), a) < std::tuple(q.x(), q.y(), q.z(), b);
+  };
+  for_ranges_in_parallel(starts_.size() - 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t c = first; c < last; ++c)
+      if (starts_[c + 1] - starts_[c] > 1)
+        std::sort(order_.begin() + starts_[c], order_.begin() + starts_[c + 1], is_before);
+  });
 }
 
 std::pair<std::uint32_t, std::uint32_t> ViewGrid::range(int row, int first_column, int last_column) const {
