@@ -9,8 +9,8 @@
 #include "modeling/built_surface.hpp"
 #include "modeling/fitting/branch_splitting.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
-#include "modeling/joining/branch_links.hpp"
 #include "modeling/input/normals.hpp"
+#include "modeling/joining/branch_links.hpp"
 #include "tubebin/modeling/filtering.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 

@@ -92,8 +92,8 @@ std::vector<TubeClass> settled(const std::vector<PossibleClass>& possible) {
 
 class ClassFinder {
  public:
-  ClassFinder(const FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion, double noise,
-              bool background_is_known, const Vec3& up)
+  ClassFinder(const FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion,
+              double noise, bool background_is_known, const Vec3& up)
       : cloud_(cloud),
         projection_(projection),
         occlusion_(occlusion),
@@ -316,8 +316,9 @@ class ClassFinder {
 
 }  // namespace
 
-TubeClasses find_tube_classes(const FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion,
-                              double noise, bool background_is_known, const Vec3& up, const std::vector<double>& told) {
+TubeClasses find_tube_classes(const FilteredCloud& cloud, const ViewProjection& projection,
+                              const OcclusionTest& occlusion, double noise, bool background_is_known, const Vec3& up,
+                              const std::vector<double>& told) {
   ClassFinder finder(cloud, projection, occlusion, noise, background_is_known, up);
   return told.empty() ? finder.find_all() : finder.find_told(told);
 }

@@ -27,7 +27,8 @@ struct TubeClasses {
 /// metres, of the points across a surface; 0 where it is not known. `background_is_known`: pieces of the first radius need
 /// no proof that they are of tubes, and go only where they are clearly of another radius. `up`: unit, against gravity; zero
 /// where it is not known.
-TubeClasses find_tube_classes(const FilteredCloud& cloud, const ViewProjection& projection, const OcclusionTest& occlusion,
-                              double noise, bool background_is_known, const Vec3& up, const std::vector<double>& told);
+TubeClasses find_tube_classes(const FilteredCloud& cloud, const ViewProjection& projection,
+                              const OcclusionTest& occlusion, double noise, bool background_is_known, const Vec3& up,
+                              const std::vector<double>& told);
 
 }  // namespace tubebin::modeling

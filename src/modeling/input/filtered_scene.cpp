@@ -155,8 +155,7 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
   ViewpointCheck viewpoint = check_viewpoint(input);
   FilteredScene scene = filter_from_viewpoint(input, options);
   // Twice: the other side of a wrong viewpoint may be another wrong one.
-  for (int turn = 0;
-       turn < 2 && !viewpoint.is_certain && is_seen_from_behind(scene.cloud, scene.projection); ++turn) {
+  for (int turn = 0; turn < 2 && !viewpoint.is_certain && is_seen_from_behind(scene.cloud, scene.projection); ++turn) {
     if (viewpoint.doubt.empty()) viewpoint.doubt = "its surfaces look hollow from there";
     look_from_the_other_side(input);
     scene = filter_from_viewpoint(input, options);

@@ -114,7 +114,8 @@ class RegionGrower {
 
   struct Face {
     Vec3 middle = Vec3::Zero(), normal = Vec3::Zero();
-    double reach = -std::numeric_limits<double>::infinity();  ///< metres, from a plane that the block lies on, beside noise
+    double reach =
+        -std::numeric_limits<double>::infinity();  ///< metres, from a plane that the block lies on, beside noise
   };
 
   /// Flat blocks among flat ones that agree with them: one at an edge may lean.
@@ -126,9 +127,7 @@ class RegionGrower {
       for (std::uint32_t block = first; block < first + columns; ++block) {
         if (!windows_.is_flat(block)) continue;
         int agreeing = 0;
-        for_each_neighbor(block, [&](std::uint32_t next) {
-          agreeing += lies_on(next, windows_.plane(block));
-        });
+        for_each_neighbor(block, [&](std::uint32_t next) { agreeing += lies_on(next, windows_.plane(block)); });
         if (agreeing >= 5) seeds_of_row.push_back(block);
       }
       return seeds_of_row;

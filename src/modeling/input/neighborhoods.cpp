@@ -13,8 +13,8 @@ namespace tubebin::modeling {
 namespace {
 
 /// Eight neighbours at a time without a branch; the arrays' padding, and what follows a run, is masked out.
-TUBEBIN_WIDE void add_runs(const PointArrays& points,
-                           std::span<const std::pair<std::uint32_t, std::uint32_t>> runs, const cloud::Point& center, float squared_radius, Moments& moments) {
+TUBEBIN_WIDE void add_runs(const PointArrays& points, std::span<const std::pair<std::uint32_t, std::uint32_t>> runs,
+                           const cloud::Point& center, float squared_radius, Moments& moments) {
   const Lanes zero = {};
   const Mask lane = {0, 1, 2, 3, 4, 5, 6, 7};
   const Lanes center_x = zero + center.x(), center_y = zero + center.y(), center_z = zero + center.z();
@@ -50,8 +50,7 @@ PointArrays arrays_of(std::span<const cloud::Point> points, const std::vector<st
 
 float nearest_range(const ViewProjection& projection, std::span<const cloud::Point> points) {
   float squared = std::numeric_limits<float>::infinity();
-  for (const cloud::Point& point : points)
-    squared = std::min(squared, (point - projection.viewpoint()).squaredNorm());
+  for (const cloud::Point& point : points) squared = std::min(squared, (point - projection.viewpoint()).squaredNorm());
   return std::sqrt(squared);
 }
 
