@@ -103,6 +103,7 @@ class ClassFinder {
 
   TubeClasses find_told(const std::vector<double>& radii) {
     for (const double radius : radii) {
+      estimate_normals(radius);
       possible_.push_back(pieces_of(search(radius), radius));
       if (radii.size() > 1) set_aside(possible_.back().sure.pieces);
     }
@@ -142,16 +143,13 @@ class ClassFinder {
   /// Metres, of normals of what is left. `radius`: of the tubes; 0 where it is not known.
   double reach(double radius) const { return normal_radius(left().spacing, radius); }
 
-  /// Of what is left, by the reach that is in use, or, at first, the radius' own.
-  const SurfaceNormals& normals(double radius) {
-    if (!normals_) normals_.emplace(left(), projection_, reach(radius));
-    return *normals_;
-  }
+  void estimate_normals(double radius) { normals_.emplace(left(), projection_, reach(radius)); }
 
   /// The radius that most places of the surface show, of those that are not `tried` yet; 0 where fewer than `enough`
   /// points show one.
   double likeliest_radius(const std::vector<double>& tried, std::size_t enough) {
-    CurvedPlaces places = find_curved_places(left(), normals(0.0));
+    if (!normals_) estimate_normals(0.0);
+    CurvedPlaces places = find_curved_places(left(), *normals_);
     if (!rest_) round_ = std::move(places.round);
     const CommonRadius common = commonest_radius(places.radii, tried);
     if (common.places < 10 || common.places * left().points.size() < enough * places.looked_at) return 0.0;
@@ -163,10 +161,9 @@ class ClassFinder {
   PossibleClass refined_class(double radius, const std::vector<double>& tried) {
     for (int round = 0; round < 2; ++round) {
       // Where points are sparse, normals from as many as a known radius would not let in are too flat.
-      if (reach(radius) < 0.9 * reach(round == 0 ? 0.0 : 2.0 * radius))
-        normals_.emplace(left(), projection_, reach(radius));
+      if (reach(radius) < 0.9 * reach(round == 0 ? 0.0 : 2.0 * radius)) estimate_normals(radius);
       // A quarter of a radius apart, a stretch of tube still has some ten votes in a voxel of segment_by_votes.
-      const FilteredCloud sample = without_ground(sample_of_left(radius / 4.0, radius), radius);
+      const FilteredCloud sample = without_ground(sample_of_left(radius / 4.0), radius);
       const double refined = refined_radius(sample, radius, projection_, occlusion_.with_radius(radius));
       if (refined <= 0.0) return {};
       if (is_tried(refined, tried)) break;
@@ -191,9 +188,9 @@ class ClassFinder {
   }
 
   /// Points of what is left, `apart` metres from each other, or farther where they would be too many.
-  FilteredCloud sample_of_left(double apart, double radius) {
+  FilteredCloud sample_of_left(double apart) const {
     const double share = static_cast<double>(left().points.size()) / kMostPoints;
-    return thinned(left(), std::max(apart, left().spacing * std::sqrt(share)), normals(radius));
+    return thinned(left(), std::max(apart, left().spacing * std::sqrt(share)), *normals_);
   }
 
   /// What is left where ground that is not flat has been taken away; all where the ground is known.
@@ -228,7 +225,7 @@ class ClassFinder {
 
   Search search(double radius) {
     // Points that lie closer together cost time and add nothing: these make 24 votes a voxel of segment_by_votes.
-    FilteredCloud sample = sample_of_left(radius / 6.0, radius);
+    FilteredCloud sample = sample_of_left(radius / 6.0);
     const std::size_t sampled = sample.points.size();
     Search search{.sample = without_ground(std::move(sample), radius), .curves = {}};
     search.curves = find_curves(search.sample, segment_by_votes(search.sample, radius), radius);

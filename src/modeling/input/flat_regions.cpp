@@ -112,10 +112,10 @@ class RegionGrower {
  private:
   static constexpr std::size_t kLeastBlocks = 12;
 
+  /// A flat block. `reach`: metres, how far from a plane that it lies on its middle may be, beside noise.
   struct Face {
     Vec3 middle = Vec3::Zero(), normal = Vec3::Zero();
-    double reach =
-        -std::numeric_limits<double>::infinity();  ///< metres, from a plane that the block lies on, beside noise
+    double reach = -std::numeric_limits<double>::infinity();
   };
 
   /// Flat blocks among flat ones that agree with them: one at an edge may lean.
@@ -177,7 +177,7 @@ class RegionGrower {
 
   const FlatBlocks& blocks_;
   const FlatWindows& windows_;
-  std::vector<Face> faces_;  ///< of the flat blocks; no plane is in reach of the others
+  std::vector<Face> faces_;  ///< of the blocks; no plane is in reach of those that are not flat
   std::vector<bool> is_taken_;
   tbb::enumerable_thread_specific<Visits> visits_;
 };
