@@ -88,4 +88,19 @@ inline double farthest_node(const TubeModel& model, const scene::PlacedTube& tub
   return farthest;
 }
 
+/// A tube of five cylinders in a line.
+inline scene::PlacedTube straight_tube(const Vec3& from, const Vec3& to) {
+  std::vector<Vec3> nodes;
+  for (int i = 0; i <= 5; ++i) nodes.push_back(from + (to - from) * i / 5.0);
+  return tube_along(nodes);
+}
+
+/// A tube across three others that lie on the floor.
+inline scene::Scene one_over_three() {
+  return scene_of({straight_tube({-0.2, 0, 3 * kRadius}, {0.2, 0, 3 * kRadius}),
+                   straight_tube({-0.12, -0.15, kRadius}, {-0.12, 0.15, kRadius}),
+                   straight_tube({0.0, -0.15, kRadius}, {0.0, 0.15, kRadius}),
+                   straight_tube({0.12, -0.15, kRadius}, {0.12, 0.15, kRadius})});
+}
+
 }  // namespace tubebin::modeling

@@ -1,44 +1,29 @@
 #include "tubebin/modeling/pipeline.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "modeling/built_scene.hpp"
 #include "tubebin/cloud/cloud_io.hpp"
-#include "tubebin/core/error.hpp"
 
 namespace tubebin::modeling {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-
 constexpr double kR = kRadius;
 
-scene::PlacedTube straight(const Vec3& from, const Vec3& to) {
-  std::vector<Vec3> nodes;
-  for (int i = 0; i <= 5; ++i) nodes.push_back(from + (to - from) * i / 5.0);
-  return tube_along(nodes);
-}
-
 scene::Scene crossing() {
-  return scene_of({straight({-0.2, 0, kR}, {0.2, 0.02, kR}), straight({0.02, -0.15, 3 * kR}, {-0.02, 0.15, 3 * kR})});
+  return scene_of(
+      {straight_tube({-0.2, 0, kR}, {0.2, 0.02, kR}), straight_tube({0.02, -0.15, 3 * kR}, {-0.02, 0.15, 3 * kR})});
 }
 
 scene::Scene touching_side_by_side() {
-  return scene_of({straight({-0.2, -kR, kR}, {0.2, -kR, kR}), straight({-0.2, kR, kR}, {0.2, kR, kR})});
-}
-
-scene::Scene one_over_three() {
-  return scene_of({straight({-0.2, 0, 3 * kR}, {0.2, 0, 3 * kR}), straight({-0.12, -0.15, kR}, {-0.12, 0.15, kR}),
-                   straight({0.0, -0.15, kR}, {0.0, 0.15, kR}), straight({0.12, -0.15, kR}, {0.12, 0.15, kR})});
+  return scene_of({straight_tube({-0.2, -kR, kR}, {0.2, -kR, kR}), straight_tube({-0.2, kR, kR}, {0.2, kR, kR})});
 }
 
 scene::Scene end_on_a_tube() {
   // The second one's end touches the first one's side.
-  return scene_of({straight({-0.2, 0, kR}, {0.2, 0, kR}), straight({0.0, kR + 0.0002, kR}, {0.0, 0.15, kR})});
+  return scene_of({straight_tube({-0.2, 0, kR}, {0.2, 0, kR}), straight_tube({0.0, kR + 0.0002, kR}, {0.0, 0.15, kR})});
 }
 
 scene::Scene bend_at_the_limit() {
@@ -50,7 +35,8 @@ scene::Scene bend_at_the_limit() {
 
 /// The upper tube hides the middle of the lower one.
 scene::Scene in_two_pieces() {
-  return scene_of({straight({-0.22, 0, kR}, {0.22, 0, kR}), straight({0.0, -0.15, 3 * kR}, {0.0, 0.15, 3 * kR})});
+  return scene_of(
+      {straight_tube({-0.22, 0, kR}, {0.22, 0, kR}), straight_tube({0.0, -0.15, 3 * kR}, {0.0, 0.15, 3 * kR})});
 }
 
 /// The labels renamed 1, 2, ... in order of their first point.
@@ -266,176 +252,6 @@ TEST(Pipeline, ARigidMotionOfTheInputMovesTheResultWithIt) {
     }
     EXPECT_LT(nearest, 0.001);
   }
-}
-
-/// One tube over three in a bin on a table among boxes and bottles, seen whole.
-scene::Scene one_over_three_in_a_cell() {
-  scene::Scene scene = one_over_three();
-  const double floor = -scene.bin.wall_thickness;
-  scene.surroundings =
-      scene::Surroundings{.table = {.position = {0, 0, floor - 0.03}, .yaw_deg = 0.0, .size = {1.6, 1.2, 0.03}},
-                          .boxes = {{.position = {0.5, 0.1, floor}, .yaw_deg = 20.0, .size = {0.2, 0.15, 0.4}},
-                                    {.position = {-0.45, -0.2, floor}, .yaw_deg = -10.0, .size = {0.15, 0.2, 0.35}}},
-                          .cylinders = {},
-                          .bins = {}};
-  scene.scanner.region = scene::ScanRegion::full;
-  return scene;
-}
-
-/// All four tubes are found, and nothing else is taken for one.
-void expect_the_tubes_alone(const ModelingResult& result, const cloud::Cloud& cloud) {
-  EXPECT_EQ(result.tubes.size(), 4u);
-  EXPECT_NEAR(result.radius, kR, 0.01 * kR);
-  std::size_t of_tubes = 0, found = 0, false_points = 0;
-  for (const cloud::Label label : cloud.labels) of_tubes += label > 0;
-  for (std::size_t i = 0; i < result.source.size(); ++i) {
-    const bool is_tube = cloud.labels[result.source[i]] > 0;
-    found += is_tube && result.labels[i] > 0;
-    false_points += !is_tube && result.labels[i] > 0;
-  }
-  EXPECT_GT(found, 0.97 * static_cast<double>(of_tubes));  // the others lie next to the floor
-  EXPECT_LT(false_points, 0.005 * static_cast<double>(of_tubes));
-}
-
-TEST(Pipeline, WhatStandsAroundAKnownBinIsNoTube) {
-  const scene::Scene scene = one_over_three_in_a_cell();
-  const cloud::Cloud cloud = scan::scan(scene).cloud;
-  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), ModelingOptions{});
-  expect_the_tubes_alone(result, cloud);
-  EXPECT_LT(result.found.unexplained, 0.2);
-}
-
-TEST(Pipeline, BottlesAndEdgesAreNoTubesWhereNothingIsTold) {
-  scene::Scene scene = one_over_three_in_a_cell();
-  const double floor = -scene.bin.wall_thickness;
-  scene.surroundings->cylinders = {{.position = {0.45, -0.3, floor}, .radius = 0.036, .height = 0.33},
-                                   {.position = {-0.5, 0.3, floor}, .radius = 0.06, .height = 0.25}};
-  scene.scanner.position = {0.0, -0.8, 1.4};
-  scene.scanner.rotation_deg = {30.0, 0.0, 0.0};
-  const cloud::Cloud cloud = scan::scan(scene).cloud;
-  ModelingInput input = input_of(cloud, scene.bin);
-  input.bin.reset();
-  const ModelingResult result = model_tubes(input, ModelingOptions{});
-  expect_the_tubes_alone(result, cloud);
-  EXPECT_EQ(result.radii.size(), 1u);
-}
-
-TEST(Pipeline, FindsTheTubesInABinThatNobodyDescribes) {
-  const scene::Scene scene = one_over_three();
-  const cloud::Cloud cloud = scan::scan(scene).cloud;
-  ModelingInput input = input_of(cloud, scene.bin);
-  input.bin.reset();
-  const ModelingResult result = model_tubes(input, known_radius());
-  EXPECT_EQ(result.tubes.size(), 4u);
-  // Strips of the bin that are too narrow to be told from tubes' sides stay in the filtered cloud, and get no label.
-  std::size_t tube_points = 0, labelled = 0, false_points = 0;
-  for (std::size_t k = 0; k < result.source.size(); ++k) {
-    const bool is_tube = cloud.labels[result.source[k]] > 0;
-    tube_points += is_tube, labelled += is_tube && result.labels[k] > 0,
-        false_points += !is_tube && result.labels[k] > 0;
-  }
-  const auto all =
-      std::count_if(cloud.labels.begin(), cloud.labels.end(), [](cloud::Label label) { return label > 0; });
-  EXPECT_GE(static_cast<double>(tube_points), 0.99 * static_cast<double>(all));
-  EXPECT_GE(static_cast<double>(labelled), 0.99 * static_cast<double>(all));
-  EXPECT_LE(static_cast<double>(false_points), 0.005 * static_cast<double>(all));
-}
-
-/// A bin about the world's origin, to a tolerance in metres.
-void expect_bin(const std::optional<BinFound>& found, const scene::Bin& bin, double tolerance) {
-  ASSERT_TRUE(found);
-  EXPECT_NEAR(found->length, bin.length, tolerance);
-  EXPECT_NEAR(found->width, bin.width, tolerance);
-  EXPECT_NEAR(found->height, bin.height, 0.001);
-  EXPECT_LT(found->world_from_bin.translation().norm(), tolerance);
-  EXPECT_GT(std::abs(found->world_from_bin.linear()(0, 0)), 0.9999);
-}
-
-TEST(Pipeline, FindsTheBinWithTheTubesWhereItHidesAWall) {
-  scene::Scene scene = one_over_three_in_a_cell();
-  scene.bin.draft_deg = 3.0;
-  scene.surroundings->bins = {{.position = {0.0, 0.65, 0.0}, .yaw_deg = 8.0}};
-  scene.scanner.position = {0.0, -0.9, 1.4};
-  scene.scanner.rotation_deg = {33.0, 0.0, 0.0};
-  const cloud::Cloud cloud = scan::scan(scene).cloud;
-  ModelingInput input = input_of(cloud, scene.bin);
-  input.bin.reset();
-  expect_bin(model_tubes(input, known_radius()).found.bin, scene.bin, 0.004);
-}
-
-TEST(Pipeline, FindsTheBinThatNobodyDescribes) {
-  const scene::Scene scene = one_over_three();
-  cloud::Cloud cloud = scan::scan(scene).cloud;
-  ModelingInput input = input_of(cloud, scene.bin);
-  input.bin.reset();
-  const std::optional<BinFound> bin = model_tubes(input, known_radius()).found.bin;
-  expect_bin(bin, scene.bin, 0.002);
-
-  for (cloud::Point& point : cloud.points)  // out of sight: a wall
-    if (point.x() > 0.25F) point.x() = std::numeric_limits<float>::quiet_NaN();
-  input.points = cloud.points;
-  EXPECT_FALSE(model_tubes(input, known_radius()).found.bin);
-}
-
-TEST(Pipeline, MakesNoTubesOfNoise) {
-  Random random(9);
-  std::vector<cloud::Point> points;
-  for (int i = 0; i < 5000; ++i)
-    points.emplace_back(static_cast<float>(random.uniform(-0.25, 0.25)),
-                        static_cast<float>(random.uniform(-0.15, 0.15)),
-                        static_cast<float>(random.uniform(0.01, 0.19)));
-  const ModelingInput input{
-      .points = points, .world_from_sensor = scene::Scanner{}.world_from_scanner(), .bin = scene::Bin{}};
-  for (const ModelingMethod method : {ModelingMethod::centerline, ModelingMethod::region_growing})
-    EXPECT_TRUE(model_tubes(input, known_radius(method)).tubes.empty());
-}
-
-TEST(Pipeline, AFlatCloudWithHardlyAPointMoreHasNoTubes) {
-  Random random(10);
-  std::vector<cloud::Point> table;
-  for (int i = 0; i < 50000; ++i)
-    table.emplace_back(static_cast<float>(random.uniform(-0.25, 0.25)), static_cast<float>(random.uniform(-0.15, 0.15)),
-                       static_cast<float>(1e-4 * random.normal()));
-  for (const std::vector<cloud::Point>& more : {std::vector<cloud::Point>{{0.1f, 0.0f, 0.1f}},
-                                                {{0.1f, 0.0f, 0.1f}, {0.1f, 0.0f, 0.1f}, {0.1f, 0.0f, 0.1000001f}}}) {
-    std::vector<cloud::Point> points = table;
-    points.insert(points.end(), more.begin(), more.end());
-    const ModelingResult found =
-        model_tubes({.points = points, .world_from_sensor = scene::Scanner{}.world_from_scanner(), .bin = {}}, {});
-    EXPECT_TRUE(found.tubes.empty());
-    EXPECT_EQ(found.found.doubts.size(), 1u);
-  }
-}
-
-TEST(Pipeline, AnEmptyBinHasNoTubes) {
-  const cloud::Cloud cloud = scan::scan(scene_of({})).cloud;
-  ModelingOptions all = known_radius();
-  all.label_all = true;
-  for (const ModelingInput& input :
-       {input_of(cloud, scene::Bin{}),
-        ModelingInput{.points = cloud.points, .world_from_sensor = cloud.world_from_sensor, .bin = {}}})
-    for (const ModelingOptions& options : {ModelingOptions{}, all, known_radius(ModelingMethod::region_growing)}) {
-      const ModelingResult found = model_tubes(input, options);
-      EXPECT_TRUE(found.tubes.empty());
-      EXPECT_EQ(std::ranges::count(found.labels, cloud::Label{0}), std::ssize(found.labels));
-      EXPECT_THAT(found.found.doubts, ElementsAre(HasSubstr("nothing in the cloud is round")));
-    }
-}
-
-TEST(Pipeline, ABoxWithoutAPointIsRefusedAndOneOfFloorIsEmpty) {
-  const cloud::Cloud cloud = scan::scan(scene_of({})).cloud;
-  const ModelingInput input{.points = cloud.points, .world_from_sensor = cloud.world_from_sensor, .bin = {}};
-  ModelingOptions options;
-  options.crop_min = Vec3(-0.1, -0.1, -0.01), options.crop_max = Vec3(0.1, 0.1, 0.1);
-  EXPECT_TRUE(model_tubes(input, options).tubes.empty());
-  options.crop_min = Vec3(5, 5, 5), options.crop_max = Vec3(6, 6, 6);
-  EXPECT_THROW(model_tubes(input, options), IoError);
-}
-
-TEST(Pipeline, ACloudWithoutAPointInTheBinIsRefused) {
-  const std::vector<cloud::Point> points = {cloud::Point(5, 5, 0.1f), cloud::Point(6, 5, 0.1f)};
-  const ModelingInput input{.points = points, .world_from_sensor = Pose::Identity(), .bin = scene::Bin{}};
-  EXPECT_THROW(model_tubes(input, known_radius()), IoError);
 }
 
 }  // namespace

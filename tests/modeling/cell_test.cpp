@@ -1,0 +1,122 @@
+// Tubes in a bin that stands in a cell, and bins that nobody describes.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "modeling/built_scene.hpp"
+#include "tubebin/modeling/pipeline.hpp"
+
+namespace tubebin::modeling {
+namespace {
+
+/// One tube over three in a bin on a table among boxes and bottles, seen whole.
+scene::Scene one_over_three_in_a_cell() {
+  scene::Scene scene = one_over_three();
+  const double floor = -scene.bin.wall_thickness;
+  scene.surroundings =
+      scene::Surroundings{.table = {.position = {0, 0, floor - 0.03}, .yaw_deg = 0.0, .size = {1.6, 1.2, 0.03}},
+                          .boxes = {{.position = {0.5, 0.1, floor}, .yaw_deg = 20.0, .size = {0.2, 0.15, 0.4}},
+                                    {.position = {-0.45, -0.2, floor}, .yaw_deg = -10.0, .size = {0.15, 0.2, 0.35}}},
+                          .cylinders = {},
+                          .bins = {}};
+  scene.scanner.region = scene::ScanRegion::full;
+  return scene;
+}
+
+/// All four tubes are found, and nothing else is taken for one.
+void expect_the_tubes_alone(const ModelingResult& result, const cloud::Cloud& cloud) {
+  EXPECT_EQ(result.tubes.size(), 4u);
+  EXPECT_NEAR(result.radius, kRadius, 0.01 * kRadius);
+  std::size_t of_tubes = 0, found = 0, false_points = 0;
+  for (const cloud::Label label : cloud.labels) of_tubes += label > 0;
+  for (std::size_t i = 0; i < result.source.size(); ++i) {
+    const bool is_tube = cloud.labels[result.source[i]] > 0;
+    found += is_tube && result.labels[i] > 0;
+    false_points += !is_tube && result.labels[i] > 0;
+  }
+  EXPECT_GT(found, 0.97 * static_cast<double>(of_tubes));  // the others lie next to the floor
+  EXPECT_LT(false_points, 0.005 * static_cast<double>(of_tubes));
+}
+
+TEST(Cell, WhatStandsAroundAKnownBinIsNoTube) {
+  const scene::Scene scene = one_over_three_in_a_cell();
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
+  const ModelingResult result = model_tubes(input_of(cloud, scene.bin), ModelingOptions{});
+  expect_the_tubes_alone(result, cloud);
+  EXPECT_LT(result.found.unexplained, 0.2);
+}
+
+TEST(Cell, BottlesAndEdgesAreNoTubesWhereNothingIsTold) {
+  scene::Scene scene = one_over_three_in_a_cell();
+  const double floor = -scene.bin.wall_thickness;
+  scene.surroundings->cylinders = {{.position = {0.45, -0.3, floor}, .radius = 0.036, .height = 0.33},
+                                   {.position = {-0.5, 0.3, floor}, .radius = 0.06, .height = 0.25}};
+  scene.scanner.position = {0.0, -0.8, 1.4};
+  scene.scanner.rotation_deg = {30.0, 0.0, 0.0};
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
+  ModelingInput input = input_of(cloud, scene.bin);
+  input.bin.reset();
+  const ModelingResult result = model_tubes(input, ModelingOptions{});
+  expect_the_tubes_alone(result, cloud);
+  EXPECT_EQ(result.radii.size(), 1u);
+}
+
+TEST(Cell, FindsTheTubesInABinThatNobodyDescribes) {
+  const scene::Scene scene = one_over_three();
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
+  ModelingInput input = input_of(cloud, scene.bin);
+  input.bin.reset();
+  const ModelingResult result = model_tubes(input, known_radius());
+  EXPECT_EQ(result.tubes.size(), 4u);
+  // Strips of the bin that are too narrow to be told from tubes' sides stay in the filtered cloud, and get no label.
+  std::size_t tube_points = 0, labelled = 0, false_points = 0;
+  for (std::size_t k = 0; k < result.source.size(); ++k) {
+    const bool is_tube = cloud.labels[result.source[k]] > 0;
+    tube_points += is_tube, labelled += is_tube && result.labels[k] > 0,
+        false_points += !is_tube && result.labels[k] > 0;
+  }
+  const auto all =
+      std::count_if(cloud.labels.begin(), cloud.labels.end(), [](cloud::Label label) { return label > 0; });
+  EXPECT_GE(static_cast<double>(tube_points), 0.99 * static_cast<double>(all));
+  EXPECT_GE(static_cast<double>(labelled), 0.99 * static_cast<double>(all));
+  EXPECT_LE(static_cast<double>(false_points), 0.005 * static_cast<double>(all));
+}
+
+/// A bin about the world's origin, to a tolerance in metres.
+void expect_bin(const std::optional<BinFound>& found, const scene::Bin& bin, double tolerance) {
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->length, bin.length, tolerance);
+  EXPECT_NEAR(found->width, bin.width, tolerance);
+  EXPECT_NEAR(found->height, bin.height, 0.001);
+  EXPECT_LT(found->world_from_bin.translation().norm(), tolerance);
+  EXPECT_GT(std::abs(found->world_from_bin.linear()(0, 0)), 0.9999);
+}
+
+TEST(Cell, FindsTheBinWithTheTubesWhereItHidesAWall) {
+  scene::Scene scene = one_over_three_in_a_cell();
+  scene.bin.draft_deg = 3.0;
+  scene.surroundings->bins = {{.position = {0.0, 0.65, 0.0}, .yaw_deg = 8.0}};
+  scene.scanner.position = {0.0, -0.9, 1.4};
+  scene.scanner.rotation_deg = {33.0, 0.0, 0.0};
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
+  ModelingInput input = input_of(cloud, scene.bin);
+  input.bin.reset();
+  expect_bin(model_tubes(input, known_radius()).found.bin, scene.bin, 0.004);
+}
+
+TEST(Cell, FindsTheBinThatNobodyDescribes) {
+  const scene::Scene scene = one_over_three();
+  cloud::Cloud cloud = scan::scan(scene).cloud;
+  ModelingInput input = input_of(cloud, scene.bin);
+  input.bin.reset();
+  const std::optional<BinFound> bin = model_tubes(input, known_radius()).found.bin;
+  expect_bin(bin, scene.bin, 0.002);
+
+  for (cloud::Point& point : cloud.points)  // out of sight: a wall
+    if (point.x() > 0.25F) point.x() = std::numeric_limits<float>::quiet_NaN();
+  input.points = cloud.points;
+  EXPECT_FALSE(model_tubes(input, known_radius()).found.bin);
+}
+
+}  // namespace
+}  // namespace tubebin::modeling
