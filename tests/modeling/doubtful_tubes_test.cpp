@@ -29,6 +29,16 @@ TEST(DoubtfulTubes, AShortOneWithFewPointsMayBeOne) {
   EXPECT_EQ(tubes.size(), 2u);
 }
 
+TEST(DoubtfulTubes, AShortOneNeedsMoreAPoint) {
+  std::vector<TubeModel> tubes = {tube_of(0.5, 0.01, 1e5), tube_of(0.07, 0.01, 380.0), tube_of(0.3, 0.01, 380.0),
+                                  tube_of(0.07, 0.01, 600.0)};
+  std::vector<cloud::Label> labels(1000, 1);
+  for (const cloud::Label label : {2, 3, 4}) labels.insert(labels.end(), 100, label);
+  ASSERT_TRUE(drop_doubtful(tubes, labels));  // 3.8 of the 78 nats a point, 5 %
+  ASSERT_EQ(tubes.size(), 3u);
+  EXPECT_NEAR(tubes[1].length(), 0.3, 1e-12);
+}
+
 TEST(DoubtfulTubes, AShortOneOfLittleEvidenceIsDropped) {
   std::vector<TubeModel> tubes = {tube_of(0.05, 0.01, 50.0)};
   EXPECT_TRUE(drop_doubtful(tubes, {1, 1, 1}));
