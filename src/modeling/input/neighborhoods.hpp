@@ -51,8 +51,8 @@ class Neighborhoods {
     const Neighborhoods& all_;
     float radius_;
     Place place_;  ///< of the point last looked at
-    std::vector<std::pair<std::uint32_t, std::uint32_t>>
-        runs_;  ///< of the points in it: positions [first, last) in order()
+    /// Of the points in it: positions [first, last) in order().
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> runs_;
   };
 
  private:
