@@ -29,6 +29,11 @@ def ripples(depth, measured, tubes, focal, random):
     return depth + 0.2 * depth / focal * smooth_noise(depth.shape, 3, random), measured
 
 
+def noise(depth, measured, tubes, focal, random):
+    """Normal noise of 1 mm, of each pixel by itself."""
+    return depth + 0.001 * random.normal(size=depth.shape), measured
+
+
 def smeared(depth, measured, tubes, focal, random):
     """Each pixel is a mean of what lies within half a pixel of it: points in the air along all edges."""
     known = ndimage.gaussian_filter(measured.astype(float), 0.5)
@@ -40,7 +45,7 @@ def liner(depth, measured, tubes, focal, random):
     return depth + np.where(tubes, 0.0, 0.002 * smooth_noise(depth.shape, 12, random)), measured
 
 
-ARTEFACTS = {artefact.__name__: artefact for artefact in (missing, shadow, ripples, smeared, liner)}
+ARTEFACTS = {artefact.__name__: artefact for artefact in (missing, shadow, ripples, noise, smeared, liner)}
 
 
 def with_artefact(image, artefact, random):

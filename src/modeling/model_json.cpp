@@ -43,6 +43,7 @@ Json scene_json(const ModelingResult& result) {
                {"up_is_known", found.up_is_known},
                {"viewpoint", place(found.viewpoint)},
                {"viewpoint_is_told", found.viewpoint_is_told},
+               {"noise_smoothed", rounded(found.noise_smoothed)},
                {"flat_regions", found.flat_regions},
                {"bin", found.bin ? bin_json(*found.bin) : Json()},
                {"radii", radii},

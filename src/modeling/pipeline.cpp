@@ -86,7 +86,7 @@ void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& opti
   auto& [measured, input, found, projection, background, cloud] = scene;
   if (background.is_known && options.method == ModelingMethod::centerline)
     label_mixed_pixels(cloud, projection, result.tubes, labels.labels);
-  result.noise = labels.noise;
+  result.noise = std::max(labels.noise, found.noise_smoothed);
   result.labels = std::move(labels.labels);
   result.source = std::move(cloud.source);
   const auto unexplained = static_cast<double>(std::ranges::count(result.labels, cloud::Label{0}));

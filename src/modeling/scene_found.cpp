@@ -39,11 +39,13 @@ std::string describe_found(const ModelingResult& result) {
   const std::string bin =
       found.bin ? fmt::format("bin {:.3f} x {:.3f} x {:.3f} m", found.bin->length, found.bin->width, found.bin->height)
                 : std::string("no bin");
+  const std::string smoothed =
+      found.noise_smoothed > 0.0 ? fmt::format("noise of {:.2f} mm smoothed; ", found.noise_smoothed * 1e3) : std::string();
   return fmt::format(
-      "scene: radius {}; length {}; up {} ({:.2f}, {:.2f}, {:.2f}); viewpoint {}; {} flat regions; "
+      "scene: radius {}; length {}; up {} ({:.2f}, {:.2f}, {:.2f}); viewpoint {}; {}{} flat regions; "
       "{}; {:.1f} % unexplained",
       radii.empty() ? "none" : radii, length, found.up_is_known ? "along" : "unknown, taken as", found.up.x(),
-      found.up.y(), found.up.z(), viewpoints, found.flat_regions, bin, 100.0 * found.unexplained);
+      found.up.y(), found.up.z(), viewpoints, smoothed, found.flat_regions, bin, 100.0 * found.unexplained);
 }
 
 void add_doubts(ModelingResult& result) {

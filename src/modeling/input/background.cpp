@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "modeling/input/scan_smoothing.hpp"
 #include "modeling/input/source_views.hpp"
 #include "modeling/input/view_grid.hpp"
 #include "modeling/parallel.hpp"
@@ -40,11 +41,14 @@ Background find_background(const ModelingInput& input, const ViewProjection& pro
   Background background;
   const std::vector<SourceView> views = views_of(input, projection, finite);
   background.spacing = spacing_of(views);
-  for (const SourceView& view : views)
-    for (FlatRegion& region : find_flat_regions(view)) {
+  for (const SourceView& view : views) {
+    const FlatBlocks blocks(view);
+    background.is_noisy |= is_noisy(view, blocks);
+    for (FlatRegion& region : find_flat_regions(blocks, view.projection)) {
       region.is_solid = is_solid(region, view.points, view.spacing.metres);
       background.regions.push_back(region);
     }
+  }
   std::ranges::stable_sort(background.regions, std::ranges::greater(), &FlatRegion::area);
   if (!background.regions.empty()) background.noise = background.regions.front().noise;
   // A region's outermost blocks are not all its own.
@@ -61,13 +65,16 @@ Background find_background(const ModelingInput& input, const ViewProjection& pro
   return background;
 }
 
-Background background_of_bin(const ModelingInput& input, const FilteringOptions& options) {
+Background background_of_bin(const ModelingInput& input, const ViewProjection& projection,
+                             const FilteringOptions& options) {
   Background background{.regions = {}, .set_aside = {}, .foreground = crop_bin(input, options), .is_known = true};
   auto next = background.foreground.begin();
   for (std::uint32_t i = 0; i < input.points.size(); ++i) {
     if (next != background.foreground.end() && *next == i) ++next;
     else if (cloud::is_finite(input.points[i])) background.set_aside.push_back(i);
   }
+  background.is_noisy = std::ranges::any_of(views_of(input, projection, background.foreground),
+                                            [](const SourceView& view) { return is_noisy(view, FlatBlocks(view)); });
   return background;
 }
 

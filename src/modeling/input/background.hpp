@@ -17,6 +17,7 @@ struct Background {
   bool is_known = false;                  ///< of a known bin: what is left is tubes, as far as anybody knows
   double noise = 0.0;                     ///< metres, across the largest regions; 0 where there is none
   double spacing = 0.0;                   ///< metres between neighbouring points at their median range
+  bool is_noisy = false;                  ///< the scan, or one of its views, as is_noisy() has it
 };
 
 /// Flat regions of any pose, and the points on them. What lies on a tube and by chance in a region's plane is set aside
@@ -28,7 +29,8 @@ Background find_background(const ModelingInput& input, const ViewProjection& pro
                            const std::vector<std::uint32_t>& finite);
 
 /// As the known bin has it (crop_bin), without looking for regions.
-Background background_of_bin(const ModelingInput& input, const FilteringOptions& options);
+Background background_of_bin(const ModelingInput& input, const ViewProjection& projection,
+                             const FilteringOptions& options);
 
 /// Those of the points that are farther than `margin` (metres) from the known bin, seen from above.
 std::vector<std::uint32_t> beside_bin(const ModelingInput& input, const std::vector<std::uint32_t>& indices,

@@ -12,6 +12,7 @@
 #include "modeling/input/bin_pose.hpp"
 #include "modeling/input/bin_rim.hpp"
 #include "modeling/input/hanging_tubes.hpp"
+#include "modeling/input/scan_smoothing.hpp"
 #include "modeling/input/viewpoint_check.hpp"
 #include "modeling/scene_found.hpp"
 #include "tubebin/core/error.hpp"
@@ -57,7 +58,7 @@ Background without_surroundings(Background background, const Background& of_bin)
 /// and the rest proves that it is tubes.
 Background background_around_bin(const ModelingInput& input, const ViewProjection& projection,
                                  const FilteringOptions& options) {
-  Background of_bin = background_of_bin(input, options);
+  Background of_bin = background_of_bin(input, projection, options);
   const bool is_alone = !has_surroundings(input, of_bin);
   const std::vector<std::uint32_t> beside = beside_bin(input, of_bin.set_aside, options.bin_margin);
   if (is_alone && beside.empty()) return of_bin;
@@ -154,6 +155,14 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
   if (!measured.empty()) input.points = measured;
   ViewpointCheck viewpoint = check_viewpoint(input);
   FilteredScene scene = filter_from_viewpoint(input, options);
+  double noise = 0.0;
+  if (scene.background.is_noisy) {
+    SmoothedScan scan = smoothed_scan(input, scene.projection);
+    noise = scan.noise;
+    measured = std::move(scan.points);
+    input.points = measured;
+    scene = filter_from_viewpoint(input, options);
+  }
   // Twice: the other side of a wrong viewpoint may be another wrong one.
   for (int turn = 0; turn < 2 && !viewpoint.is_certain && is_seen_from_behind(scene.cloud, scene.projection); ++turn) {
     if (viewpoint.doubt.empty()) viewpoint.doubt = "its surfaces look hollow from there";
@@ -167,6 +176,7 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
         fmt::format("the cloud was not seen from {}, as VIEWPOINT or --viewpoint has it: {}; {} is taken instead",
                     place_text(told.world_from_sensor.translation()), viewpoint.doubt,
                     place_text(scene.found.viewpoint)));
+  scene.found.noise_smoothed = noise;
   scene.measured = std::move(measured);
   return scene;
 }

@@ -11,7 +11,7 @@ namespace tubebin::modeling {
 
 /// A scene after step 1.
 struct FilteredScene {
-  std::vector<cloud::Point> measured;  ///< that `input` views; none: it views the points that were told
+  std::vector<cloud::Point> measured;  ///< that `input` views, without noise; none: it views the points that were told
   ModelingInput input;                 ///< with viewpoint and bin as the cloud shows them
   SceneFound found;                    ///< but for what labels tell
   ViewProjection projection;

@@ -117,8 +117,10 @@ FittedPlane::FittedPlane(const PointMoments& moments, double residual) : center(
   normal.normalize();
 }
 
-FlatBlocks::FlatBlocks(const SourceView& view, const PointSpacing& spacing, const Vec3& origin)
-    : viewpoint_(view.projection.viewpoint().cast<double>() - origin), angle_(spacing.angle) {
+FlatBlocks::FlatBlocks(const SourceView& view, double wider)
+    : origin_(view.points[view.points.size() / 2].cast<double>()),
+      viewpoint_(view.projection.viewpoint().cast<double>() - origin_),
+      angle_(wider * view.spacing.angle) {
   const ViewProjection::Images& images = view.images;
   const auto [u_min, u_max] = std::ranges::minmax(images.u);
   const auto [v_min, v_max] = std::ranges::minmax(images.v);
@@ -133,7 +135,7 @@ FlatBlocks::FlatBlocks(const SourceView& view, const PointSpacing& spacing, cons
     const int row = static_cast<int>((images.v[i] - v_min) * inverse_block);
     const int column = static_cast<int>((images.u[i] - u_min) * inverse_block);
     moments_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)].add(
-        view.points[i].cast<double>() - origin);
+        view.points[i].cast<double>() - origin_);
   }
   residuals_.resize(moments_.size(), std::numeric_limits<double>::infinity());
   for_ranges_in_parallel(size(), [&](std::size_t first, std::size_t last) {

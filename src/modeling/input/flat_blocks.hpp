@@ -35,14 +35,15 @@ struct FittedPlane {
 };
 
 /// Blocks of four by four points, where the whole of them is measured; one with six or more has a plane. Positions are from
-/// `origin`.
+/// one of the points: sums of far ones would be rounded.
 class FlatBlocks {
  public:
   static constexpr double kPoints = 4.0;  ///< in each direction
 
-  /// Of points as far apart as `spacing` says.
-  FlatBlocks(const SourceView& view, const PointSpacing& spacing, const Vec3& origin);
+  /// Of a view that has points. `wider`: than four of its points.
+  explicit FlatBlocks(const SourceView& view, double wider = 1.0);
 
+  const Vec3& origin() const { return origin_; }
   std::size_t size() const { return moments_.size(); }
   int columns() const { return columns_; }
   int rows() const { return rows_; }
@@ -56,7 +57,7 @@ class FlatBlocks {
   double spacing(std::size_t block) const { return angle_ * (moments_[block].mean() - viewpoint_).norm(); }
 
  private:
-  Vec3 viewpoint_;
+  Vec3 origin_, viewpoint_;  ///< in the world; from the origin
   double angle_;
   int columns_ = 1, rows_ = 1;
   std::vector<PointMoments> moments_;

@@ -9,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "modeling/input/flat_blocks.hpp"
 #include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
@@ -205,11 +204,11 @@ std::vector<Region> merge_coplanar(std::vector<Region> regions, const FlatBlocks
   return merged;
 }
 
-FlatRegion flat_region(const Region& region, const FlatBlocks& blocks, const Vec3& origin, const Vec3& viewpoint) {
+FlatRegion flat_region(const Region& region, const FlatBlocks& blocks, const Vec3& viewpoint) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(region.moments.covariance());
   FlatRegion flat;
   flat.plane.normal = region.plane.normal;
-  flat.center = region.plane.center + origin;
+  flat.center = region.plane.center + blocks.origin();
   if ((viewpoint - flat.center).dot(flat.plane.normal) < 0.0) flat.plane.normal = -flat.plane.normal;
   flat.plane.offset = flat.plane.normal.dot(flat.center);
   flat.noise = std::sqrt(region.plane.mean_square);
@@ -229,17 +228,6 @@ FlatRegion flat_region(const Region& region, const FlatBlocks& blocks, const Vec
   return flat;
 }
 
-/// Blocks in which planes show beside the noise: where that is as wide as the spacing, larger ones.
-FlatBlocks blocks_beyond_noise(const SourceView& view, const Vec3& origin) {
-  constexpr double kNoise = 0.4;  // spacings
-  const PointSpacing& spacing = view.spacing;
-  FlatBlocks blocks(view, spacing, origin);
-  if (blocks.roughness() < kNoise * spacing.metres) return blocks;
-  // Within three by three points even tubes of three spacings' radius are nearly flat, and what is rough is noise.
-  const double noise = FlatBlocks(view, 0.75 * spacing, origin).roughness() / spacing.metres;
-  return noise < kNoise ? blocks : FlatBlocks(view, noise / kNoise * spacing, origin);
-}
-
 }  // namespace
 
 bool FlatRegion::holds(const Vec3& point, double margin) const {
@@ -252,15 +240,12 @@ bool FlatRegion::spans(const Vec3& point, double margin) const {
          std::abs(offset.dot(axes[1])) < half_extents[1] + margin;
 }
 
-std::vector<FlatRegion> find_flat_regions(const SourceView& view) {
-  if (view.points.empty()) return {};
-  const Vec3 origin = view.points[view.points.size() / 2].cast<double>();
-  const Vec3 viewpoint = view.projection.viewpoint().cast<double>();
-  const FlatBlocks blocks = blocks_beyond_noise(view, origin);
+std::vector<FlatRegion> find_flat_regions(const FlatBlocks& blocks, const ViewProjection& projection) {
+  const Vec3 viewpoint = projection.viewpoint().cast<double>();
   const FlatWindows windows(blocks);
   std::vector<FlatRegion> flat;
   for (const Region& region : merge_coplanar(RegionGrower(blocks, windows).grow_all(), blocks, windows)) {
-    FlatRegion found = flat_region(region, blocks, origin, viewpoint);
+    FlatRegion found = flat_region(region, blocks, viewpoint);
     // Longer than the thickest tube there may be is wide: a tube's flat end is no wall.
     if (found.half_extents[0] > 42.0 * blocks.spacing(region.blocks.front())) flat.push_back(found);
   }

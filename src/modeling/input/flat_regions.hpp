@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "modeling/input/source_views.hpp"
+#include "modeling/input/flat_blocks.hpp"
 
 namespace tubebin::modeling {
 
@@ -33,7 +33,7 @@ struct FlatRegion {
   bool spans(const Vec3& point, double margin) const;
 };
 
-/// Flat regions, largest first.
-std::vector<FlatRegion> find_flat_regions(const SourceView& view);
+/// Flat regions of the view that the blocks are of, largest first.
+std::vector<FlatRegion> find_flat_regions(const FlatBlocks& blocks, const ViewProjection& projection);
 
 }  // namespace tubebin::modeling

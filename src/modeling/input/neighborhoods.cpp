@@ -69,6 +69,12 @@ float cell_for(double radius, const ViewProjection& projection, std::span<const 
 
 }  // namespace
 
+Eigen::Matrix3d Moments::covariance() const {
+  Eigen::Matrix3d products;
+  products << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  return products / double(count) - mean() * mean().transpose();
+}
+
 Neighborhoods::Neighborhoods(const ViewProjection& projection, std::span<const cloud::Point> points, double radius)
     : points_(points),
       cell_(cell_for(radius, projection, points)),
@@ -79,6 +85,13 @@ Moments Neighborhoods::Window::moments_around(std::size_t i, float wider) {
   look_at(i);
   Moments moments;
   add_runs(all_.sorted_, runs_, all_.points_[i], wider * wider * radius_ * radius_, moments);
+  return moments;
+}
+
+Moments Neighborhoods::Window::moments_about(const cloud::Point& place, std::size_t i) {
+  look_at(i);
+  Moments moments;
+  add_runs(all_.sorted_, runs_, place, radius_ * radius_, moments);
   return moments;
 }
 

@@ -14,6 +14,9 @@ namespace tubebin::modeling {
 struct Moments {
   float count = 0.0f, x = 0.0f, y = 0.0f, z = 0.0f;
   float xx = 0.0f, xy = 0.0f, xz = 0.0f, yy = 0.0f, yz = 0.0f, zz = 0.0f;
+
+  Vec3 mean() const { return Vec3(x, y, z) / double(count); }
+  Eigen::Matrix3d covariance() const;
 };
 
 /// Coordinates, one array each.
@@ -37,6 +40,8 @@ class Neighborhoods {
 
     /// Of the points within the radius, `wider` times, of point i, in the part of the view that the radius covers.
     Moments moments_around(std::size_t i, float wider = 1.0f);
+    /// Of the points within the radius of a place in the same direction as point i, about the place.
+    Moments moments_about(const cloud::Point& place, std::size_t i);
     /// Indices of the points within the radius of point i, itself among them.
     std::vector<std::uint32_t> points_around(std::size_t i);
 
