@@ -21,13 +21,14 @@ struct Scan {
     indices.push_back(static_cast<std::uint32_t>(points.size()));
     points.push_back((kBin.world_from_bin * Vec3(x, y, z)).cast<float>());
   }
-  /// The upper sides of the walls, of thickness `wall`; every `step`th row of them.
-  void add_rim(double wall, int step) {
-    const double x_out = kBin.length / 2.0 + wall, y_out = kBin.width / 2.0 + wall;
+  /// The upper sides of the walls, of thickness `wall`, which lean outward by `lean`; every `step`th row of them.
+  void add_rim(double wall, int step, double lean = 0.0) {
+    const double x_in = kBin.length / 2.0 + lean, y_in = kBin.width / 2.0 + lean;
+    const double x_out = x_in + wall, y_out = y_in + wall;
     int row = 0;
     for (double x = -x_out + kSpacing / 2.0; x < x_out; x += kSpacing, ++row)
       for (double y = -y_out + kSpacing / 2.0; y < y_out; y += kSpacing)
-        if ((std::abs(x) > kBin.length / 2.0 || std::abs(y) > kBin.width / 2.0) && row % step == 0)
+        if ((std::abs(x) > x_in || std::abs(y) > y_in) && row % step == 0)
           add(x, y, kBin.height);
   }
 };
@@ -40,6 +41,14 @@ TEST(BinRim, IsAsWideAsItSurroundsTheBin) {
   for (double x = 0.0; x < 0.2; x += kSpacing)
     if (std::abs(x - kBin.length / 2.0) > 2.0 * kWall) scan.add(x, 0.0, kBin.height);
   for (double x = 0.0; x < 0.1; x += kSpacing) scan.add(x, 0.05, 0.0);
+  EXPECT_EQ(points_on_rim(kBin, scan.points, scan.indices, 0.0005, kSpacing), rim);
+}
+
+TEST(BinRim, LiesFartherOutWhereWallsLean) {
+  Scan scan;
+  scan.add_rim(kWall, 1, 0.026);
+  const std::vector<std::uint32_t> rim = scan.indices;
+  for (double x = 0.0; x < kBin.length / 2.0; x += kSpacing) scan.add(x, 0.0, kBin.height);
   EXPECT_EQ(points_on_rim(kBin, scan.points, scan.indices, 0.0005, kSpacing), rim);
 }
 

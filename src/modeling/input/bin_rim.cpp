@@ -6,7 +6,10 @@
 namespace tubebin::modeling {
 namespace {
 
-/// A point at the walls' height, and how far out from their inner sides, metres.
+/// Walls that lean outward put their rim as far out again.
+constexpr double kFarthestOut = 2.0 * kThickestWall;
+
+/// A point at the walls' height, and how far out from the inner floor, metres.
 struct HighPoint {
   std::uint32_t index = 0;
   double outside = 0.0;
@@ -20,21 +23,29 @@ std::vector<HighPoint> points_at_height(const BinFound& bin, std::span<const clo
   for (const std::uint32_t i : indices) {
     const Vec3 p = bin_from_world * points[i].cast<double>();
     const double outside = (p.head<2>().array().abs() - inner).maxCoeff();
-    if (std::abs(p.z() - bin.height) < tolerance && outside > -tolerance && outside < kThickestWall)
+    if (std::abs(p.z() - bin.height) < tolerance && outside > -tolerance && outside < kFarthestOut)
       high.push_back({.index = i, .outside = outside});
   }
   return high;
 }
 
-/// How far out rings about the bin, a spacing wide, have as many points as surround it by a third.
-double rim_width(const BinFound& bin, std::span<const HighPoint> high, double spacing) {
+/// How far out, metres.
+struct Band {
+  double inner = 0.0, outer = 0.0;
+};
+
+/// Where rings about the bin, a spacing wide, have as many points as surround it by a third.
+Band rim_band(const BinFound& bin, std::span<const HighPoint> high, double spacing) {
   const double enough = 2.0 * (bin.length + bin.width) / spacing / 3.0;
-  double width = 0.0;
-  for (; width < kThickestWall; width += spacing) {
-    const auto in_ring = [&](const HighPoint& p) { return p.outside >= width && p.outside < width + spacing; };
-    if (static_cast<double>(std::ranges::count_if(high, in_ring)) < enough) break;
-  }
-  return width;
+  const auto surrounds = [&](double out) {
+    const auto in_ring = [&](const HighPoint& p) { return p.outside >= out && p.outside < out + spacing; };
+    return static_cast<double>(std::ranges::count_if(high, in_ring)) >= enough;
+  };
+  Band band;
+  while (band.inner < kFarthestOut && !surrounds(band.inner)) band.inner += spacing;
+  band.outer = band.inner;
+  while (band.outer < kFarthestOut && surrounds(band.outer)) band.outer += spacing;
+  return band;
 }
 
 }  // namespace
@@ -42,10 +53,10 @@ double rim_width(const BinFound& bin, std::span<const HighPoint> high, double sp
 std::vector<std::uint32_t> points_on_rim(const BinFound& bin, std::span<const cloud::Point> points,
                                          std::span<const std::uint32_t> indices, double tolerance, double spacing) {
   const std::vector<HighPoint> high = points_at_height(bin, points, indices, tolerance);
-  const double width = rim_width(bin, high, spacing);
+  const auto [inner, outer] = rim_band(bin, high, spacing);
   std::vector<std::uint32_t> on_rim;
   for (const HighPoint& p : high)
-    if (width > 0.0 && p.outside < width) on_rim.push_back(p.index);
+    if (p.outside > inner - tolerance && p.outside < outer) on_rim.push_back(p.index);
   return on_rim;
 }
 
