@@ -39,8 +39,9 @@ std::string describe_found(const ModelingResult& result) {
   const std::string bin =
       found.bin ? fmt::format("bin {:.3f} x {:.3f} x {:.3f} m", found.bin->length, found.bin->width, found.bin->height)
                 : std::string("no bin");
-  const std::string smoothed =
-      found.noise_smoothed > 0.0 ? fmt::format("noise of {:.2f} mm smoothed; ", found.noise_smoothed * 1e3) : std::string();
+  const std::string smoothed = found.noise_smoothed > 0.0
+                                   ? fmt::format("noise of {:.2f} mm smoothed; ", found.noise_smoothed * 1e3)
+                                   : std::string();
   return fmt::format(
       "scene: radius {}; length {}; up {} ({:.2f}, {:.2f}, {:.2f}); viewpoint {}; {}{} flat regions; "
       "{}; {:.1f} % unexplained",

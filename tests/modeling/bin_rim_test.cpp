@@ -28,8 +28,7 @@ struct Scan {
     int row = 0;
     for (double x = -x_out + kSpacing / 2.0; x < x_out; x += kSpacing, ++row)
       for (double y = -y_out + kSpacing / 2.0; y < y_out; y += kSpacing)
-        if ((std::abs(x) > x_in || std::abs(y) > y_in) && row % step == 0)
-          add(x, y, kBin.height);
+        if ((std::abs(x) > x_in || std::abs(y) > y_in) && row % step == 0) add(x, y, kBin.height);
   }
 };
 

@@ -143,7 +143,8 @@ TEST(NoisyScene, IsModelledWithTheBinAndWithout) {
     ASSERT_EQ(result.tubes.size(), scene.tubes.size());
     for (const scene::PlacedTube& tube : scene.tubes) {
       const auto off = [&](const TubeModel& model) { return farthest_node(model, tube); };
-      EXPECT_LT(std::ranges::min(result.tubes | std::views::transform(off)), 0.6 * kRadius) << "bin told: " << tells_bin;
+      EXPECT_LT(std::ranges::min(result.tubes | std::views::transform(off)), 0.6 * kRadius)
+          << "bin told: " << tells_bin;
     }
     if (tells_bin) {
       EXPECT_GE(micro_recall_of(result, cloud), 0.97);

@@ -73,11 +73,11 @@ struct SceneFound {
   Vec3 viewpoint = Vec3::Zero();              ///< metres, of source 0
   std::vector<Vec3> further_viewpoints = {};  ///< of the other sources
   bool viewpoint_is_told = true;              ///< else found from the cloud
-  double noise_smoothed = 0.0;                ///< metres, standard deviation of what was taken from a noisy scan; 0: as it is
-  std::size_t flat_regions = 0;               ///< set aside as floor, walls and other obstacles
-  std::optional<BinFound> bin;                ///< where the cloud shows one; nothing else rests on it
-  double unexplained = 0.0;                   ///< part of the filtered points that no tube explains
-  std::vector<std::string> doubts;            ///< why the result may not be trusted, as sentences
+  double noise_smoothed = 0.0;      ///< metres, standard deviation of what was taken from a noisy scan; 0: as it is
+  std::size_t flat_regions = 0;     ///< set aside as floor, walls and other obstacles
+  std::optional<BinFound> bin;      ///< where the cloud shows one; nothing else rests on it
+  double unexplained = 0.0;         ///< part of the filtered points that no tube explains
+  std::vector<std::string> doubts;  ///< why the result may not be trusted, as sentences
 };
 
 struct ModelingResult {
@@ -88,9 +88,9 @@ struct ModelingResult {
   std::vector<double> radii;          ///< metres, of all tubes, the commonest first
   std::vector<double> radius_errors;  ///< metres, standard deviations; 0 where told
   std::vector<double> lengths;        ///< metres, that tubes have in common: as given, or as estimated, ascending
-  double noise = 0.0;                 ///< metres, standard deviation of the points' distances to the fitted surfaces; of a scan
-                                      ///< that was smoothed, the noise before
-  double spacing = 0.0;               ///< metres between neighbouring filtered points
+  double noise = 0.0;    ///< metres, standard deviation of the points' distances to the fitted surfaces; of a scan
+                         ///< that was smoothed, the noise before
+  double spacing = 0.0;  ///< metres between neighbouring filtered points
   StageSeconds seconds;
   SceneFound found;
   std::vector<cloud::Label> all_labels;  ///< of each point of the input, with ModelingOptions::label_all
