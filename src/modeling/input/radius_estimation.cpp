@@ -116,7 +116,7 @@ CommonRadius commonest_radius(std::vector<double> radii, const std::vector<doubl
   std::ranges::sort(radii);
   CommonRadius common;
   for (std::size_t first = 0, last = 0; first < radii.size(); ++first) {
-    while (last < radii.size() && radii[last] < 1.3 * radii[first]) ++last;
+    while (last < radii.size() && radii[last] < 1.5 * radii[first]) ++last;
     if (last - first <= common.places) continue;
     common = {.radius = radii[first + (last - first) / 2], .places = last - first};
   }
