@@ -41,10 +41,6 @@ class ViewGrid {
 struct PointSpacing {
   double angle = 0.0;   ///< in the plane of the projection, radians
   double metres = 0.0;  ///< at the points' median range
-
-  friend PointSpacing operator*(double factor, const PointSpacing& spacing) {
-    return {factor * spacing.angle, factor * spacing.metres};
-  }
 };
 
 /// From how many points the cells of a grid hold.
