@@ -82,16 +82,13 @@ Neighborhoods::Neighborhoods(const ViewProjection& projection, std::span<const c
       sorted_(arrays_of(points, grid_.order())) {}
 
 Moments Neighborhoods::Window::moments_around(std::size_t i, float wider) {
-  look_at(i);
-  Moments moments;
-  add_runs(all_.sorted_, runs_, all_.points_[i], wider * wider * radius_ * radius_, moments);
-  return moments;
+  return moments_about(all_.points_[i], i, wider);
 }
 
-Moments Neighborhoods::Window::moments_about(const cloud::Point& place, std::size_t i) {
+Moments Neighborhoods::Window::moments_about(const cloud::Point& place, std::size_t i, float wider) {
   look_at(i);
   Moments moments;
-  add_runs(all_.sorted_, runs_, place, radius_ * radius_, moments);
+  add_runs(all_.sorted_, runs_, place, wider * wider * radius_ * radius_, moments);
   return moments;
 }
 

@@ -40,8 +40,8 @@ class Neighborhoods {
 
     /// Of the points within the radius, `wider` times, of point i, in the part of the view that the radius covers.
     Moments moments_around(std::size_t i, float wider = 1.0f);
-    /// Of the points within the radius of a place in the same direction as point i, about the place.
-    Moments moments_about(const cloud::Point& place, std::size_t i);
+    /// The same about a place in the direction of point i.
+    Moments moments_about(const cloud::Point& place, std::size_t i, float wider = 1.0f);
     /// Indices of the points within the radius of point i, itself among them.
     std::vector<std::uint32_t> points_around(std::size_t i);
 
