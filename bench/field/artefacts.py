@@ -24,6 +24,18 @@ def shadow(depth, measured, tubes, focal, random):
     return depth, measured & (seen < nearest + 1.0)
 
 
+def dark(depth, measured, tubes, focal, random):
+    """Dark or glossy tubes: they have no data where they are seen at more than 55 degrees, nor beside an edge."""
+    height, width = depth.shape
+    row, column = np.mgrid[:height, :width] + 0.5
+    rays = np.stack([(column - width / 2) / focal, (row - height / 2) / focal, np.ones_like(depth)], -1)
+    points = rays * np.where(measured, depth, np.nan)[..., None]
+    normals = np.cross(np.gradient(points, axis=0), np.gradient(points, axis=1))
+    lengths = np.linalg.norm(normals, axis=-1) * np.linalg.norm(rays, axis=-1)
+    is_seen = np.abs((normals * rays).sum(-1)) > np.cos(np.radians(55)) * lengths  # false where a neighbour has no data
+    return depth, measured & (is_seen | ~tubes)
+
+
 def ripples(depth, measured, tubes, focal, random):
     """Noise of a fifth of the points' spacing that neighbours three pixels apart share, as patterns of light leave it."""
     return depth + 0.2 * depth / focal * smooth_noise(depth.shape, 3, random), measured
@@ -45,7 +57,7 @@ def liner(depth, measured, tubes, focal, random):
     return depth + np.where(tubes, 0.0, 0.002 * smooth_noise(depth.shape, 12, random)), measured
 
 
-ARTEFACTS = {artefact.__name__: artefact for artefact in (missing, shadow, ripples, noise, smeared, liner)}
+ARTEFACTS = {artefact.__name__: artefact for artefact in (missing, shadow, dark, ripples, noise, smeared, liner)}
 
 
 def with_artefact(image, artefact, random):

@@ -23,6 +23,19 @@ TEST(RadiusEstimation, PlacesOnATubeCurveAsItDoes) {
   }
 }
 
+/// Glossy and dark tubes show a narrow strip. Normals at the points themselves would have a third of its curvature: all of its
+/// points have nearly the same neighbours.
+TEST(RadiusEstimation, PlacesOnANarrowStripCurveAsTheTubeDoes) {
+  constexpr double kTube = 0.005, kHalfWidth = 0.0035;
+  FilteredCloud strip = upper_half_of({{-0.1, 0, 0}, {0.1, 0, 0}}, kTube);
+  std::erase_if(strip.points, [](const cloud::Point& p) { return std::abs(double(p.y())) > kHalfWidth; });
+  strip.source.resize(strip.points.size());
+  CurvedPlaces places = curved_places_of(strip);
+  ASSERT_GT(places.radii.size(), 0.5 * static_cast<double>(places.looked_at));
+  std::ranges::sort(places.radii);
+  EXPECT_NEAR(places.radii[places.radii.size() / 2], kTube, 0.2 * kTube);
+}
+
 TEST(RadiusEstimation, WhatIsFlatOrCurvesBothWaysHasNoRadius) {
   FilteredCloud ball{.source = {}, .points = {}, .normals = {}, .spacing = 0.001}, plane = ball;
   for (double x = -0.02; x <= 0.02; x += ball.spacing)

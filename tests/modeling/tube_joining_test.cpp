@@ -149,6 +149,21 @@ TEST(Occlusion, SeesTubesThatHangOverTheWall) {
   EXPECT_EQ(occlusion.around({0.05, 0.3, 0.22}, Vec3::UnitY()).empty, 1.0);
 }
 
+/// A tube that points nearly at the scanner: places 0.4 radii beside its centreline look as those on it do, though the surface
+/// there is 1.5 radii nearer or farther along the ray. Those three radii beside it are seen to be empty.
+TEST(Occlusion, AllowsForThePlaceOfTubesThatPointAtTheScanner) {
+  const Vec3 from(0, 0, 0.05), along = Vec3(std::sin(radians(15.0)), 0, std::cos(radians(15.0)));
+  const scene::Scene scene = scene_of({tube_along({from, from + 0.3 * along})});
+  const scan::Scan view = scan::scan(scene, 1);
+  const OcclusionTest occlusion(input_of(view.cloud, scene.bin), {view.cloud.world_from_sensor, cloud::Point::Zero()},
+                                0.001, kRadius);
+  const Vec3 center = from + 0.15 * along, across = Vec3::UnitY().cross(along);
+  for (const double radii : {-0.4, 0.0, 0.4})
+    EXPECT_EQ(occlusion.around(center + radii * kRadius * across, along).empty, 0.0) << radii;
+  for (const double radii : {-3.0, 3.0})
+    EXPECT_EQ(occlusion.around(center + radii * kRadius * Vec3::UnitY(), along).empty, 1.0) << radii;
+}
+
 /// Of a floor seen from 2 m above, a square of 0.1 m is not measured. Then the sensor is rotated, and the picture fills no
 /// rectangle; then a slit leads from the square to the borders; then only a cross is measured, as of tubes alone.
 TEST(Occlusion, AGapInAPictureMayHideATubeAndOneBetweenTubesAloneDoesNot) {

@@ -86,10 +86,16 @@ bool is_as_thick(const TubePiece& ball, const TubeClass& tubes) {
   return std::abs(std::log(ball.radius / tubes.radius)) < 0.3;
 }
 
-/// Whether all of the piece's centreline is within the ball.
+/// Whether most of the piece's centreline is within the ball. That of a tube is nowhere.
 bool is_of_ball(const TubePiece& piece, const TubePiece& ball) {
-  return std::ranges::all_of(piece.nodes,
-                             [&](const Vec3& node) { return (node - ball.nodes.front()).norm() < ball.radius; });
+  constexpr int kPlaces = 8;  // of each cylinder
+  double inside = 0.0;
+  for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
+    const Vec3 step = (piece.nodes[k + 1] - piece.nodes[k]) / kPlaces;
+    for (int i = 0; i < kPlaces; ++i)
+      if ((piece.nodes[k] + (i + 0.5) * step - ball.nodes.front()).norm() < ball.radius) inside += step.norm();
+  }
+  return 2.0 * inside > piece.length();
 }
 
 }  // namespace

@@ -158,7 +158,8 @@ class ClassFinder {
 
   /// From the radius that places show to the one that the longest pieces show, and to all of its pieces. What tubes of a
   /// `tried` radius left over leads back to that one, and is not followed.
-  PossibleClass refined_class(double radius, const std::vector<double>& tried) {
+  PossibleClass refined_class(double seen, const std::vector<double>& tried) {
+    double radius = seen;
     for (int round = 0; round < 2; ++round) {
       // Where points are sparse, normals from as many as a known radius would not let in are too flat.
       if (reach(radius) < 0.9 * reach(round == 0 ? 0.0 : 2.0 * radius)) estimate_normals(radius);
@@ -172,14 +173,17 @@ class ClassFinder {
       if (is_settled) break;
     }
     Search found = search(radius);
-    if (found.has_ground) {
-      // The longest pieces may have been ground, and the radius as well.
+    if (!found.has_ground) return pieces_of(std::move(found), radius);
+    // The longest pieces may have been ground, and the radius as well.
+    for (const double guess : {radius, seen}) {
+      if (guess != radius) found = search(guess);
       const double own =
-          radius_along(found.curves.curves, found.sample, radius, projection_, occlusion_.with_radius(radius));
-      if (own <= 0.0) return {};
-      if (std::abs(own - radius) > 0.01 * radius && !is_tried(own, tried)) found = search(radius = own);
+          radius_along(found.curves.curves, found.sample, guess, projection_, occlusion_.with_radius(guess));
+      if (own <= 0.0) continue;
+      if (std::abs(own - guess) > 0.01 * guess) return pieces_of(search(own), own);
+      return pieces_of(std::move(found), guess);
     }
-    return pieces_of(std::move(found), radius);
+    return {};
   }
 
   bool is_believed(const PossibleClass& found) const {
@@ -246,21 +250,21 @@ class ClassFinder {
     double information = 0.0;
     std::vector<double> offs;
     for (auto& [piece, evidence] : tubes_of(pieces, sample, radius, has_ground)) {
-      if (!all_is_tube() && stands_upright(piece, up_)) {
-        standing_.push_back(std::move(piece));
-        continue;
-      }
       // Of two normal errors, the plane's is that many standard deviations.
       const double deviations = evidence.curvature / evidence.curvature_error;
       piece.evidence = 0.5 * deviations * deviations;
+      const bool is_unsure = is_doubtful(piece.length(), radius, piece.evidence);
+      if (!all_is_tube() && stands_upright(piece, up_)) {
+        if (!is_unsure) standing_.push_back(std::move(piece));
+        continue;
+      }
       information += 1.0 / (evidence.curvature_error * evidence.curvature_error);
       const double off = std::abs(evidence.curvature - 1.0);
       if (piece.length() >= kShort * radius) {
         offs.push_back(off);
         if (!is_known(piece, off)) found.evidence += piece.evidence;
       }
-      if (is_doubtful(piece.length(), radius, piece.evidence) || off > kSureOff + 2.0 * evidence.curvature_error)
-        found.unsure.push_back({std::move(piece), off});
+      if (is_unsure || off > kSureOff + 2.0 * evidence.curvature_error) found.unsure.push_back({std::move(piece), off});
       else found.sure.pieces.push_back(std::move(piece));
     }
     if (information > 0.0) found.sure.radius_error = radius / std::sqrt(information);

@@ -72,8 +72,9 @@ std::vector<std::uint32_t> every(std::size_t stride, const FilteredCloud& cloud)
 SurfaceNormals::SurfaceNormals(const FilteredCloud& cloud, const ViewProjection& projection, double radius)
     : cloud_(cloud), projection_(projection), radius_(radius), neighborhoods_(projection, cloud.points, radius) {}
 
-std::vector<cloud::Point> SurfaceNormals::at(std::span<const std::uint32_t> indices) const {
-  std::vector<cloud::Point> normals(indices.size(), cloud::Point::Zero());
+TangentPlanes SurfaceNormals::planes_at(std::span<const std::uint32_t> indices) const {
+  TangentPlanes planes{.normals = std::vector<cloud::Point>(indices.size(), cloud::Point::Zero()),
+                       .middles = std::vector<cloud::Point>(indices.size(), cloud::Point::Zero())};
   std::vector<std::uint32_t> left(indices.size());  // positions in `indices`
   std::iota(left.begin(), left.end(), 0U);
   // Where the surface is seen at a flat angle, rows of points that are neighbours in the view lie far apart in space:
@@ -91,12 +92,16 @@ std::vector<cloud::Point> SurfaceNormals::at(std::span<const std::uint32_t> indi
           to_viewpoint[k] = viewpoint_of(i, cloud_.viewpoints, projection_) - cloud_.points[i];
         }
         plane_normals(moments, to_viewpoint, found);
-        for (std::size_t k = 0; k < count; ++k) normals[left[first + k]] = found[k];
+        for (std::size_t k = 0; k < count; ++k) {
+          const std::uint32_t position = left[first + k];
+          planes.normals[position] = found[k];
+          planes.middles[position] = cloud_.points[indices[position]] + moments[k].mean().cast<float>();
+        }
       }
     });
-    std::erase_if(left, [&](std::uint32_t k) { return !normals[k].isZero(); });
+    std::erase_if(left, [&](std::uint32_t k) { return !planes.normals[k].isZero(); });
   }
-  return normals;
+  return planes;
 }
 
 std::vector<std::uint32_t> SurfaceNormals::around(std::uint32_t point, double reach) const {

@@ -9,6 +9,13 @@
 
 namespace tubebin::modeling {
 
+/// Least-squares planes through points' neighbours.
+struct TangentPlanes {
+  std::vector<cloud::Point> normals;  ///< unit, toward the viewpoint that saw the point; zero where there is no plane
+  std::vector<cloud::Point>
+      middles;  ///< of the neighbours, metres: a curved surface has the normal there, not at the point
+};
+
 /// Normals of a cloud's surface at the points that are asked for: few are needed where points lie close together.
 class SurfaceNormals {
  public:
@@ -16,9 +23,10 @@ class SurfaceNormals {
   SurfaceNormals(const FilteredCloud& cloud, const ViewProjection& projection, double radius);
 
   double radius() const { return radius_; }
-  /// Unit normals of the points at `indices`, toward the viewpoint that saw each, by least-squares planes; zero where a point
-  /// has fewer than five neighbours or they do not span a plane. Fastest in the order of the scanner's view.
-  std::vector<cloud::Point> at(std::span<const std::uint32_t> indices) const;
+  /// Of the points at `indices`; none where a point has fewer than five neighbours or they do not span a plane. Fastest in the
+  /// order of the scanner's view.
+  TangentPlanes planes_at(std::span<const std::uint32_t> indices) const;
+  std::vector<cloud::Point> at(std::span<const std::uint32_t> indices) const { return planes_at(indices).normals; }
   /// Indices of the points within `reach` metres of the point, itself among them.
   std::vector<std::uint32_t> around(std::uint32_t point, double reach) const;
 

@@ -17,17 +17,17 @@ struct Curvatures {
 
 /// The symmetric 2 x 2 map from tangent offsets to changes of the normal `n`, by least squares over the point's neighbours within
 /// four spacings, about fifty of them. Zeros where these are too few to tell.
-Curvatures curvatures_at(std::uint32_t point, const cloud::Point& n, const FilteredCloud& cloud,
-                         const SurfaceNormals& surface) {
+Curvatures curvatures_at(std::uint32_t point, const cloud::Point& n, const cloud::Point& middle,
+                         const FilteredCloud& cloud, const SurfaceNormals& surface) {
   const std::vector<std::uint32_t> neighbors = surface.around(point, 4.0 * cloud.spacing);
-  const std::vector<cloud::Point> normals = surface.at(neighbors);
+  const auto [normals, middles] = surface.planes_at(neighbors);
   const cloud::Point u = n.unitOrthogonal();
   const cloud::Point v = n.cross(u);
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero(), turn = Eigen::Matrix2d::Zero();
   int count = 0;
   for (std::size_t k = 0; k < neighbors.size(); ++k) {
     if (normals[k].dot(n) <= 0.5f) continue;
-    const cloud::Point q = cloud.points[neighbors[k]] - cloud.points[point], m = normals[k] - n;
+    const cloud::Point q = middles[k] - middle, m = normals[k] - n;
     const Eigen::Vector2d offset(double(q.dot(u)), double(q.dot(v))), change(double(m.dot(u)), double(m.dot(v)));
     scatter += offset * offset.transpose();
     turn += change * offset.transpose();
@@ -90,9 +90,9 @@ CurvedPlaces find_curved_places(const FilteredCloud& cloud, const SurfaceNormals
   std::vector<std::uint32_t> looked_at;
   for (std::size_t i = 0; i < cloud.points.size(); i += cloud.points.size() / kPlaces + 1)
     looked_at.push_back(static_cast<std::uint32_t>(i));
-  const std::vector<cloud::Point> normals = surface.at(looked_at);
+  const auto [normals, middles] = surface.planes_at(looked_at);
   const std::vector<Curvatures> curvatures = map_in_parallel(looked_at.size(), [&](std::size_t k) {
-    return normals[k].isZero() ? Curvatures{} : curvatures_at(looked_at[k], normals[k], cloud, surface);
+    return normals[k].isZero() ? Curvatures{} : curvatures_at(looked_at[k], normals[k], middles[k], cloud, surface);
   });
   CurvedPlaces places{.radii = {}, .round = {}, .looked_at = looked_at.size()};
   for (std::size_t k = 0; k < looked_at.size(); ++k) {
@@ -101,7 +101,7 @@ CurvedPlaces find_curved_places(const FilteredCloud& cloud, const SurfaceNormals
     if (least < 0.0 && std::abs(most) < -0.3 * least) ++places.hollow;
     if (least > 0.6 * most) {
       const double radius = 2.0 / (least + most);
-      places.round.push_back({cloud.points[looked_at[k]].cast<double>() - radius * normals[k].cast<double>(), radius});
+      places.round.push_back({middles[k].cast<double>() - radius * normals[k].cast<double>(), radius});
     }
   }
   return places;

@@ -12,6 +12,8 @@ namespace {
 
 /// Places across a tube that are looked at together.
 constexpr std::size_t kMostAcross = 3;
+/// Of the angle between a tube and the ray to it. Tubes that point at the scanner show hardly any of their sides.
+constexpr double kLeastSine = 0.25;
 
 float view_cell(std::span<const cloud::Point> points, const ViewProjection& projection, double spacing) {
   constexpr std::size_t kSample = 1000;
@@ -117,11 +119,14 @@ StretchEvidence OcclusionTest::evidence_at(const Vec3& center, const Vec3& direc
   seen.fill(Evidence::beyond);
   for (const View& view : *views_) {
     const Vec3 to_viewpoint = view.viewpoint - center;
-    const Vec3 up = (to_viewpoint - to_viewpoint.dot(direction) * direction).normalized();
+    const Vec3 across = to_viewpoint - to_viewpoint.dot(direction) * direction;
+    const Vec3 up = across.normalized();
+    const double sine = std::max(across.norm() / to_viewpoint.norm(), kLeastSine);
+    const double in_range = tolerance * radius_ / sine;
     const Vec3 side = direction.cross(up);
     for (std::size_t k = 0; k < places.size(); ++k) {
       const Vec3 place = center + radius_ * (places[k].x() * side + places[k].y() * up);
-      seen[k] = std::max(seen[k], view.image.evidence(place.cast<float>(), static_cast<float>(tolerance * radius_)));
+      seen[k] = std::max(seen[k], view.image.evidence(place.cast<float>(), static_cast<float>(in_range)));
     }
   }
   StretchEvidence sum;

@@ -53,7 +53,7 @@ class OcclusionTest {
  private:
   /// Of a place beside the centreline as a scanner sees it, radii: to the right, and towards the scanner.
   using Place = Eigen::Vector2d;
-  /// What was measured within `tolerance` radii of a place, in range, counts as surface.
+  /// What was measured within `tolerance` radii of a place, across the tube, counts as surface.
   StretchEvidence evidence_at(const Vec3& center, const Vec3& direction, std::span<const Place> places,
                               double tolerance) const;
   /// At the surface, so many radii to the right.
