@@ -132,13 +132,31 @@ TEST_F(ShapeJoiningUnderLid, GivesUpWhereMuchOfWhatIsSeenIsOfOtherShapes) {
   EXPECT_EQ(none.explained, 0.0);
 }
 
-TEST_F(ShapeJoiningUnderLid, AnElbowsCopiesLeaveTheBendsOfLongerTubesInTwo) {
+TEST_F(ShapeJoiningUnderLid, AnElbowsCopiesExplainLongerTubesWorse) {
   // A corner of the U with half of its middle, twice over, lies on both bends of each U; the U itself keeps them whole.
   const Centerlines elbow = {smooth_samples({kU[0], kU[1], {0, -kMiddle / 2.0, 0}}, kRadius / 2.0, kRadius)};
   std::vector<TubePiece> whole;
   for (const double x : {-0.4, 0.4}) whole.push_back(piece_along(moved(kU, turned(30.0, {x, 0.3, 0}))));
-  EXPECT_DOUBLE_EQ(join_by_shapes(whole, kShapes, occlusion()).whole_bends, 1.0);
-  EXPECT_LE(join_by_shapes(whole, elbow, occlusion()).whole_bends, 0.5);
+  const double of_us = join_by_shapes(whole, kShapes, occlusion()).gain;
+  EXPECT_GT(of_us, 0.0);
+  EXPECT_LT(join_by_shapes(whole, elbow, occlusion()).gain, of_us / 2.0);
+}
+
+TEST_F(ShapeJoiningUnderLid, TubesThatAreAlikeByChanceAreJoinedByThemselves) {
+  Random random(128);  // of 300 scenes the one where copies of one tube explain three quarters of them
+  std::vector<TubePiece> pieces;
+  for (int k = 0; k < 8; ++k) {
+    std::vector<Vec3> nodes = {Vec3(-0.5 + 0.05 * k, -0.6 + 0.15 * k, 0)};
+    Vec3 along = Vec3::UnitX();
+    for (int n = 0; n < 8; ++n) {
+      along = Eigen::AngleAxisd(radians(random.uniform(-12.0, 12.0)), Vec3::UnitZ()) * along;
+      nodes.push_back(nodes.back() + kLength / 8.0 * along);
+    }
+    pieces.push_back(piece_along(std::move(nodes)));
+  }
+  const Joining joining = join_pieces(pieces, occlusion(), 0.0);
+  EXPECT_FALSE(joining.are_copies);
+  EXPECT_EQ(joining.paths.size(), pieces.size());
 }
 
 TEST_F(ShapeJoiningUnderLid, LeavesWhatTheScanShowsToBeElsewhere) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 
 #include "modeling/joining/cover_margins.hpp"
 #include "modeling/joining/sampled_curve.hpp"
@@ -11,9 +10,14 @@
 namespace tubebin::modeling {
 namespace {
 
-/// nats, against each tube that the scene is taken to have more, and against a section on its own, most of whose tube would
-/// be out of sight.
-constexpr double kTubeCost = 3.0, kAloneCost = 4.0;
+/// nats, against each tube that the scene is taken to have more.
+constexpr double kTubeCost = 3.0;
+
+/// nats, against a tube most of which is out of sight, but for so many metres.
+double cost_alone(double length, double radius) {
+  constexpr double kHiddenCost = 4.0;
+  return kTubeCost + kHiddenCost * std::min(length / (4.0 * radius), 1.0);
+}
 
 /// Samples, half a radius apart, where a piece turns by more than 37 degrees within two radii, and most about there.
 std::vector<std::size_t> sharp_bends(const std::vector<Vec3>& samples) {
@@ -67,10 +71,9 @@ CopyCover cheapest_copies(const std::vector<Section>& sections, const std::vecto
     candidate.cost = kTubeCost + copy.cost;
   }
   for (std::uint32_t k = 0; k < sections.size(); ++k) {
-    const double part = std::min(sections[k].length / (4.0 * radius), 1.0);
     PathCandidate& alone = candidates.emplace_back();
     alone.items.push_back(k);
-    alone.cost = kTubeCost + part * kAloneCost;
+    alone.cost = cost_alone(sections[k].length, radius);
   }
   constexpr std::size_t kMostNodes = 5000;
   const PathCover cheapest = cheapest_path_cover(sections.size(), candidates, {}, kMostNodes);
@@ -122,24 +125,15 @@ TubePath path_of(const ChosenCopy& chosen, const std::vector<Section>& sections)
   return path;
 }
 
-/// `copy_of`: of each section, the copy that it is placed in, or none.
-double whole_bends_of(const std::vector<Section>& sections, const std::vector<std::optional<std::size_t>>& copy_of) {
-  double bends = 0.0, whole = 0.0;
-  for (std::size_t k = 0; k + 1 < sections.size(); ++k) {
-    // Two sections of one piece share a node.
-    if (sections[k].samples.back() != sections[k + 1].samples.front()) continue;
-    bends += 1.0;
-    if (copy_of[k] && copy_of[k] == copy_of[k + 1]) whole += 1.0;
-  }
-  return bends > 0.0 ? whole / bends : 1.0;
-}
-
 }  // namespace
 
 ShapeSearch::ShapeSearch(const std::vector<TubePiece>& pieces, std::span<const std::vector<Vec3>> shapes,
                          const OcclusionTest& occlusion, double least_explained)
     : shapes_(shapes),
       radius_(pieces.front().radius),
+      cost_alone_(std::accumulate(
+          pieces.begin(), pieces.end(), 0.0,
+          [](double sum, const TubePiece& piece) { return sum + cost_alone(piece.length(), piece.radius); })),
       sections_(sections_of(pieces)),
       copies_(find_shape_copies(sections_, shapes, radius_, occlusion, least_explained)) {}
 
@@ -151,19 +145,18 @@ ShapeJoining ShapeSearch::join(std::span<const std::size_t> chosen) const {
     result.lengths.push_back(polyline_length(shapes_[k]));
   }
   const CopyCover cover = cheapest_copies(sections_, copies, radius_);
-  result.cost = cover.cost;
-  std::vector<std::optional<std::size_t>> copy_of(sections_.size());
+  result.gain = cost_alone_ - cover.cost;
+  std::vector<bool> is_placed(sections_.size(), false);
   for (const ChosenCopy& each : cover.chosen) {
-    for (const PlacedSection& placed : each.copy.placed) copy_of[placed.section] = result.paths.size();
+    for (const PlacedSection& placed : each.copy.placed) is_placed[placed.section] = true;
     result.paths.push_back(path_of(each, sections_));
   }
-  result.whole_bends = whole_bends_of(sections_, copy_of);
   double all = 0.0;
   for (std::size_t k = 0; k < sections_.size(); ++k) {
     const Section& section = sections_[k];
     all += section.length;
     const auto explains = [&](const ChosenCopy& each) { return lies_on_copy(section, each.copy, radius_); };
-    if (copy_of[k] || std::ranges::any_of(cover.chosen, explains)) {
+    if (is_placed[k] || std::ranges::any_of(cover.chosen, explains)) {
       result.explained += section.length;
     } else {
       result.rest.push_back({.nodes = section.samples, .radius = radius_, .points = {}, .evidence = section.evidence});

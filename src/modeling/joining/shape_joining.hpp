@@ -15,9 +15,8 @@ struct ShapeJoining {
   std::vector<TubePath> paths;  ///< of the copies: what pieces show of them, and their own course between, bridged
   std::vector<TubePiece> rest;  ///< what no copy explains
   double explained = 0.0;       ///< part of the pieces' length that the copies explain
-  double whole_bends = 0.0;     ///< part of the pieces' sharp bends both sides of which are in one copy; 1 without any
-  /// nats: -log of the scene's likelihood, but for what is the same for any shape; infinite before copies were chosen
-  double cost = std::numeric_limits<double>::infinity();
+  /// nats, how much likelier copies make the scene than a tube for each piece does; before copies were chosen nothing is
+  double gain = -std::numeric_limits<double>::infinity();
   std::vector<double> lengths;  ///< of the shapes, metres
 };
 
@@ -35,6 +34,7 @@ class ShapeSearch {
  private:
   std::span<const std::vector<Vec3>> shapes_;
   double radius_;
+  double cost_alone_;  ///< nats, of a tube for each piece
   std::vector<Section> sections_;
   std::vector<std::vector<ShapeCopy>> copies_;  ///< of each shape
 };

@@ -200,28 +200,27 @@ ShapeSet with_further_shape(const ShapeSet& set, const ShapeSearch& search, std:
     if (std::ranges::find(set.shapes, k) != set.shapes.end()) continue;
     std::vector<std::size_t> shapes = set.shapes;
     shapes.push_back(k);
-    if (ShapeJoining joining = search.join(shapes); joining.cost < best.joining.cost)
+    if (ShapeJoining joining = search.join(shapes); joining.gain > best.joining.gain)
       best = {std::move(shapes), std::move(joining)};
   }
   return best;
 }
 
 /// Copies of the shapes that the tubes have in common: of the one that explains the scene best, and of further ones where
-/// these gain enough. None unless they explain three quarters of all that is seen of tubes, and five eighths of the sharp
-/// bends (of several shapes nine tenths): copies of what two kinds have in common explain many tubes by halves.
+/// these gain enough. None unless they explain it better than the cover does, and three quarters of all that is seen of tubes:
+/// tubes that are bent at random may be alike where they bend little.
 std::optional<ShapeJoining> with_common_shapes(const Cover& cover, const std::vector<TubePiece>& pieces,
                                                const OcclusionTest& occlusion) {
   const std::vector<std::vector<Vec3>> shapes = possible_shapes(seen_tubes(cover), pieces);
   if (shapes.empty()) return std::nullopt;
   const ShapeSearch search(pieces, shapes, occlusion, kLeastExplained);
   ShapeSet best, larger = with_further_shape({}, search, shapes.size());
-  while (larger.joining.cost < best.joining.cost - kFurtherShapeGain) {
+  while (larger.joining.gain > best.joining.gain + kFurtherShapeGain) {
     best = std::move(larger);
     larger = with_further_shape(best, search, shapes.size());
   }
   const ShapeJoining& joining = best.joining;
-  const double least_whole = best.shapes.size() > 1 ? 0.9 : 0.625;
-  if (joining.explained < kLeastExplained || joining.whole_bends < least_whole) return std::nullopt;
+  if (joining.gain < -cost_of(cover) || joining.explained < kLeastExplained) return std::nullopt;
   return std::move(best.joining);
 }
 
