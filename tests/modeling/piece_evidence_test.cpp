@@ -7,14 +7,15 @@
 namespace tubebin::modeling {
 namespace {
 
-/// Of a tube through the nodes whose upper half was measured.
-PieceEvidence evidence_of(const std::vector<Vec3>& nodes) {
-  const FilteredCloud cloud = upper_half_of(nodes);
+/// Of a tube through the nodes of which the cloud's points were measured.
+PieceEvidence evidence_of(const std::vector<Vec3>& nodes, const FilteredCloud& cloud) {
   const ModelingInput input{
       .points = cloud.points, .world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 1}), .bin = {}};
   const OcclusionTest occlusion(input, view_from_above(), cloud.spacing, kRadius);
-  return examine_piece({.nodes = nodes, .radius = kRadius, .points = cloud.source}, cloud.points, occlusion);
+  return examine_piece({.nodes = nodes, .radius = kRadius, .points = cloud.source}, cloud, occlusion);
 }
+
+PieceEvidence evidence_of(const std::vector<Vec3>& nodes) { return evidence_of(nodes, upper_half_of(nodes)); }
 
 /// A centreline that winds about a can twice as wide as it is thick.
 std::vector<Vec3> helix(double rise_of_turn) {
@@ -31,6 +32,26 @@ TEST(PieceEvidence, IsATubeWhereItIsOne) {
   EXPECT_NEAR(evidence.curvature, 1.0, 0.05);
   EXPECT_EQ(evidence.coiled, 0.0);
   EXPECT_TRUE(is_tube(evidence, kRadius, 0.0));
+}
+
+/// Of a tube that points at the scanner, and is dark, hardly more than the flat end and a narrow strip is measured.
+TEST(PieceEvidence, CountsNoFlatEndAsASide) {
+  const std::vector<Vec3> nodes = {{-0.05, 0, 0}, {0.05, 0, 0}};
+  const FilteredCloud whole = upper_half_of(nodes);
+  FilteredCloud strip{.source = {}, .points = {}, .normals = {}, .spacing = whole.spacing};
+  const auto add = [&](const cloud::Point& point, const cloud::Point& normal) {
+    strip.source.push_back(static_cast<std::uint32_t>(strip.points.size()));
+    strip.points.push_back(point);
+    strip.normals.push_back(normal);
+  };
+  for (std::size_t i = 0; i < whole.points.size(); ++i)
+    if (whole.normals[i].z() > 0.9f) add(whole.points[i], whole.normals[i]);
+  for (double y = -kRadius; y <= kRadius; y += whole.spacing / 2.0)
+    for (double z = -kRadius; z <= kRadius; z += whole.spacing / 2.0)
+      if (std::hypot(y, z) < kRadius) add(Vec3(0.0499, y, z).cast<float>(), cloud::Point::UnitX());
+  const PieceEvidence evidence = evidence_of(nodes, strip);
+  EXPECT_NEAR(evidence.curvature, 1.0, 0.05);
+  EXPECT_LT(evidence.sigma, 0.01 * kRadius);
 }
 
 TEST(PieceEvidence, IsCoiledWhereItsTurnsShareOnePlace) {

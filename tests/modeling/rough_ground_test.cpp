@@ -105,7 +105,7 @@ PieceEvidence evidence_on(const std::function<double(double)>& height, double ha
   TubePiece piece{.nodes = {{-0.09, 0, 0}, {0.09, 0, 0}}, .radius = kRadius, .points = {}};
   for (std::uint32_t i = 0; i < cloud.points.size(); ++i)
     if (std::abs(cloud.points[i].y()) < half_width) piece.points.push_back(i);
-  return examine_piece(piece, cloud.points, occlusion_of(cloud));
+  return examine_piece(piece, cloud, occlusion_of(cloud));
 }
 
 double round(double y) { return std::sqrt(std::max(kRadius * kRadius - y * y, 0.0)); }

@@ -79,25 +79,26 @@ TEST(FlatRegions, TubesOfThreeToFortySpacingsAreNotFlat) {
 }
 
 /// A strip of a cylinder's surface, or of its tangent plane, of this half width.
-std::vector<cloud::Point> strip(double radius, double half_width, bool is_flat, double noise) {
+FilteredCloud strip(double radius, double half_width, bool is_flat, double noise) {
   Random random(3);
-  std::vector<cloud::Point> points;
+  FilteredCloud cloud{.source = {}, .points = {}, .normals = {}, .spacing = 0.0015};
   for (double along = 0.0; along < 0.1; along += 0.0015)
     for (double across = -half_width; across <= half_width; across += 0.0015) {
       const double height = is_flat ? radius : std::sqrt(radius * radius - across * across);
-      points.push_back(Vec3(along, across, height + noise * random.normal()).cast<float>());
+      cloud.points.push_back(Vec3(along, across, height + noise * random.normal()).cast<float>());
+      cloud.normals.push_back(Vec3(0, is_flat ? 0.0 : across, height).normalized().cast<float>());
     }
-  return points;
+  return cloud;
 }
 
-PieceEvidence evidence_of(const std::vector<cloud::Point>& points, double radius) {
+PieceEvidence evidence_of(const FilteredCloud& cloud, double radius) {
   TubePiece piece{.nodes = {Vec3(-0.001, 0, 0), Vec3(0.101, 0, 0)}, .radius = radius, .points = {}};
-  for (std::uint32_t i = 0; i < points.size(); ++i) piece.points.push_back(i);
+  for (std::uint32_t i = 0; i < cloud.points.size(); ++i) piece.points.push_back(i);
   const ModelingInput input{
-      .points = points, .world_from_sensor = Pose(Eigen::Translation3d(0.05, 0.0, 1.0)), .bin = {}};
-  const OcclusionTest occlusion(input, ViewProjection(input.world_from_sensor, cloud::Point(0.05f, 0, 0)), 0.0015,
+      .points = cloud.points, .world_from_sensor = Pose(Eigen::Translation3d(0.05, 0.0, 1.0)), .bin = {}};
+  const OcclusionTest occlusion(input, ViewProjection(input.world_from_sensor, cloud::Point(0.05f, 0, 0)), cloud.spacing,
                                 radius);
-  return examine_piece(piece, points, occlusion);
+  return examine_piece(piece, cloud, occlusion);
 }
 
 TEST(PieceEvidence, TellsASideFromAStripOfAPlane) {

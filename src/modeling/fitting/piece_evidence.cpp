@@ -15,12 +15,14 @@ struct AcrossPoint {
   double excess = 0.0;
 };
 
-/// The piece's points by stretches of some radii, straight enough for one axis each.
-std::vector<std::vector<AcrossPoint>> points_across(const TubePiece& piece, std::span<const cloud::Point> points) {
+/// The points of the piece's side by stretches of some radii, straight enough for one axis each.
+std::vector<std::vector<AcrossPoint>> points_across(const TubePiece& piece, const FilteredCloud& cloud) {
   struct Axis {
     Vec3 start, along, side, up;
     double length;
   };
+  // The flat end of a tube that points at the scanner may have as many points as its side.
+  constexpr double kMostAlong = 0.5;  // a normal's cosine with the axis
   std::vector<Axis> axes;
   const double most = 4.0 * piece.radius;
   for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
@@ -37,7 +39,7 @@ std::vector<std::vector<AcrossPoint>> points_across(const TubePiece& piece, std:
   }
   std::vector<std::vector<AcrossPoint>> stretches(axes.size());
   for (const std::uint32_t i : piece.points) {
-    const Vec3 p = points[i].cast<double>();
+    const Vec3 p = cloud.points[i].cast<double>(), normal = cloud.normals[i].cast<double>();
     for (std::size_t k = 0; k < axes.size(); ++k) {
       const Vec3 offset = p - axes[k].start;
       const double t = offset.dot(axes[k].along);
@@ -45,6 +47,7 @@ std::vector<std::vector<AcrossPoint>> points_across(const TubePiece& piece, std:
       const Eigen::Vector2d across(offset.dot(axes[k].side), offset.dot(axes[k].up));
       const double distance = across.norm(), excess = distance - piece.radius;
       if (std::abs(excess) > piece.radius / 3.0) continue;
+      if (std::abs(normal.dot(axes[k].along)) > kMostAlong) break;
       stretches[k].push_back({.direction = across / distance, .excess = excess});
       break;
     }
@@ -140,11 +143,10 @@ OutlineEvidence outline_along(std::span<const Vec3> nodes, double radius, const 
   return mean;
 }
 
-PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point> points,
-                            const OcclusionTest& occlusion) {
+PieceEvidence examine_piece(const TubePiece& piece, const FilteredCloud& cloud, const OcclusionTest& occlusion) {
   PieceEvidence evidence;
   RadiusChange change;
-  for (const auto& stretch : points_across(piece, points)) change.add(stretch);
+  for (const auto& stretch : points_across(piece, cloud)) change.add(stretch);
   if (change.information > 0.0 && change.freedom > 0.0) {
     const double radius_change = change.pull / change.information;
     const double squares = std::max(change.squares - radius_change * change.pull, 0.0);

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "modeling/joining/occlusion.hpp"
+#include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/tube_model.hpp"
 
 namespace tubebin::modeling {
@@ -22,8 +23,8 @@ struct PieceEvidence {
 /// On average along a centreline.
 OutlineEvidence outline_along(std::span<const Vec3> nodes, double radius, const OcclusionTest& occlusion);
 
-PieceEvidence examine_piece(const TubePiece& piece, std::span<const cloud::Point> points,
-                            const OcclusionTest& occlusion);
+/// `cloud` has the piece's points, with normals.
+PieceEvidence examine_piece(const TubePiece& piece, const FilteredCloud& cloud, const OcclusionTest& occlusion);
 
 /// Whether the points are clearly of another curvature than a tube's of this radius.
 bool has_other_radius(const PieceEvidence& evidence);

@@ -24,7 +24,7 @@ struct Guess {
   const OcclusionTest& occlusion;
 
   bool is_round(const TubePiece& piece) const {
-    const PieceEvidence evidence = examine_piece(piece, cloud.points, occlusion);
+    const PieceEvidence evidence = examine_piece(piece, cloud, occlusion);
     return std::abs(evidence.curvature - 1.0) <= 0.4 && evidence.empty <= 0.3;
   }
 

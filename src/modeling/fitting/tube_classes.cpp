@@ -209,7 +209,7 @@ class ClassFinder {
   std::vector<ExaminedPiece> tubes_of(const std::vector<TubePiece>& pieces, const FilteredCloud& sample, double radius,
                                       bool outlined) const {
     const OcclusionTest occlusion = occlusion_.with_radius(radius);
-    const auto examine = [&](const TubePiece& piece) { return examine_piece(piece, sample.points, occlusion); };
+    const auto examine = [&](const TubePiece& piece) { return examine_piece(piece, sample, occlusion); };
     const auto shows_tube = [&](const PieceEvidence& evidence) {
       if (all_is_tube()) return !has_other_radius(evidence);
       return is_tube(evidence, radius, noise_) && !(outlined && goes_on_beside(evidence.outline));
