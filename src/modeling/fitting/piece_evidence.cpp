@@ -22,7 +22,7 @@ std::vector<std::vector<AcrossPoint>> points_across(const TubePiece& piece, cons
     double length;
   };
   // The flat end of a tube that points at the scanner may have as many points as its side.
-  constexpr double kMostAlong = 0.5;  // a normal's cosine with the axis
+  constexpr double kMostAlong = 0.7;  // a normal's cosine with the axis
   std::vector<Axis> axes;
   const double most = 4.0 * piece.radius;
   for (std::size_t k = 0; k + 1 < piece.nodes.size(); ++k) {
