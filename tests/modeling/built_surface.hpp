@@ -16,7 +16,8 @@ inline ViewProjection view_from_above() { return {make_pose(Quat(0, 1, 0, 0), {0
 
 /// Curved places by normals that are estimated from the cloud, whose tubes have such a radius (0: not known).
 inline CurvedPlaces curved_places_of(const FilteredCloud& cloud, double radius = 0.0) {
-  return find_curved_places(cloud, SurfaceNormals(cloud, view_from_above(), normal_radius(cloud.spacing, radius)));
+  const SurfaceNormals surface(cloud, view_from_above(), normal_radius(cloud.spacing, radius));
+  return find_curved_places(cloud, surface, kSomePlaces);
 }
 
 /// The upper half of a tube's surface, sampled every 1.5 mm, without the joints' spheres.

@@ -9,17 +9,28 @@
 namespace tubebin::modeling {
 namespace {
 
+std::vector<double> sorted_radii(const CurvedPlaces& places) {
+  std::vector<double> radii;
+  for (const TubularPlace& place : places.tubular) radii.push_back(place.radius);
+  std::ranges::sort(radii);
+  return radii;
+}
+
 TEST(RadiusEstimation, PlacesOnATubeCurveAsItDoes) {
   for (const double radius : {0.008, 0.0125, 0.03}) {
     const FilteredCloud cloud = upper_half_of({{-0.1, 0, 0}, {0.1, 0, 0}}, radius);
-    CurvedPlaces places = curved_places_of(cloud, radius);
-    ASSERT_GT(places.radii.size(), 0.9 * static_cast<double>(places.looked_at));
-    std::ranges::sort(places.radii);
-    EXPECT_NEAR(places.radii[places.radii.size() / 2], radius, 0.05 * radius);
+    const CurvedPlaces places = curved_places_of(cloud, radius);
+    const std::vector<double> radii = sorted_radii(places);
+    ASSERT_GT(radii.size(), 0.9 * static_cast<double>(places.looked_at));
+    EXPECT_NEAR(radii[radii.size() / 2], radius, 0.05 * radius);
     // At the half's edges all neighbours are on one side.
-    const std::size_t quarter = places.radii.size() / 4;
-    EXPECT_NEAR(places.radii[quarter], radius, 0.15 * radius);
-    EXPECT_NEAR(places.radii[places.radii.size() - quarter], radius, 0.15 * radius);
+    const std::size_t quarter = radii.size() / 4;
+    EXPECT_NEAR(radii[quarter], radius, 0.15 * radius);
+    EXPECT_NEAR(radii[radii.size() - quarter], radius, 0.15 * radius);
+    std::size_t on_axis = 0;
+    for (const TubularPlace& place : places.tubular)
+      if (std::hypot(place.center.y(), place.center.z()) < 0.2 * radius && std::abs(place.axis.x()) > 0.98) ++on_axis;
+    EXPECT_GT(on_axis, places.tubular.size() / 2);
   }
 }
 
@@ -30,10 +41,10 @@ TEST(RadiusEstimation, PlacesOnANarrowStripCurveAsTheTubeDoes) {
   FilteredCloud strip = upper_half_of({{-0.1, 0, 0}, {0.1, 0, 0}}, kTube);
   std::erase_if(strip.points, [](const cloud::Point& p) { return std::abs(double(p.y())) > kHalfWidth; });
   strip.source.resize(strip.points.size());
-  CurvedPlaces places = curved_places_of(strip);
-  ASSERT_GT(places.radii.size(), 0.5 * static_cast<double>(places.looked_at));
-  std::ranges::sort(places.radii);
-  EXPECT_NEAR(places.radii[places.radii.size() / 2], kTube, 0.2 * kTube);
+  const CurvedPlaces places = curved_places_of(strip);
+  const std::vector<double> radii = sorted_radii(places);
+  ASSERT_GT(radii.size(), 0.5 * static_cast<double>(places.looked_at));
+  EXPECT_NEAR(radii[radii.size() / 2], kTube, 0.2 * kTube);
 }
 
 TEST(RadiusEstimation, WhatIsFlatOrCurvesBothWaysHasNoRadius) {
@@ -46,15 +57,17 @@ TEST(RadiusEstimation, WhatIsFlatOrCurvesBothWaysHasNoRadius) {
   for (const FilteredCloud& cloud : {ball, plane}) {
     const CurvedPlaces places = curved_places_of(cloud);
     EXPECT_GT(places.looked_at, 300u);
-    EXPECT_TRUE(places.radii.empty());
+    EXPECT_TRUE(places.tubular.empty());
   }
 }
 
 TEST(RadiusEstimation, TheCommonestRadiusIsTheOneThatMostPlacesShow) {
-  const std::vector<double> radii = {0.010, 0.3, 0.011, 0.0102, 0.0098, 0.02, 0.021, 0.0205, 0.05};
-  EXPECT_DOUBLE_EQ(commonest_radius(radii, {}).radius, 0.0102);
-  EXPECT_EQ(commonest_radius(radii, {}).places, 4u);
-  EXPECT_DOUBLE_EQ(commonest_radius(radii, {0.0105}).radius, 0.0205);
+  std::vector<TubularPlace> places;
+  for (const double radius : {0.010, 0.3, 0.011, 0.0102, 0.0098, 0.02, 0.021, 0.0205, 0.05})
+    places.push_back({.radius = radius, .center = Vec3::Zero(), .axis = Vec3::UnitX()});
+  EXPECT_DOUBLE_EQ(commonest_radius(places, {}).radius, 0.0102);
+  EXPECT_EQ(commonest_radius(places, {}).places, 4u);
+  EXPECT_DOUBLE_EQ(commonest_radius(places, {0.0105}).radius, 0.0205);
   EXPECT_EQ(commonest_radius({}, {}).places, 0u);
   EXPECT_TRUE(is_tried(0.0100, {0.02, 0.0105}));
   EXPECT_FALSE(is_tried(0.0100, {0.02, 0.0120}));

@@ -96,8 +96,8 @@ PieceEvidence evidence_of(const FilteredCloud& cloud, double radius) {
   for (std::uint32_t i = 0; i < cloud.points.size(); ++i) piece.points.push_back(i);
   const ModelingInput input{
       .points = cloud.points, .world_from_sensor = Pose(Eigen::Translation3d(0.05, 0.0, 1.0)), .bin = {}};
-  const OcclusionTest occlusion(input, ViewProjection(input.world_from_sensor, cloud::Point(0.05f, 0, 0)), cloud.spacing,
-                                radius);
+  const OcclusionTest occlusion(input, ViewProjection(input.world_from_sensor, cloud::Point(0.05f, 0, 0)),
+                                cloud.spacing, radius);
   return examine_piece(piece, cloud, occlusion);
 }
 

@@ -5,13 +5,6 @@
 #include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
-namespace {
-
-/// Points r / 6 apart: twenty tubes, forty radii long, have fewer. Real scans round their edges, and most of a few rods' outlines are
-/// lost: so little is no rough ground.
-constexpr std::size_t kMany = 50'000;
-
-}  // namespace
 
 std::vector<char> find_ground(const std::vector<VoteCurve>& curves, double radius, const OcclusionTest& occlusion) {
   const double tolerance = bend_tolerance(curves, radius);
@@ -22,7 +15,7 @@ std::vector<char> find_ground(const std::vector<VoteCurve>& curves, double radiu
 
 bool is_rough(const std::vector<VoteCurve>& curves, const std::vector<char>& is_ground, std::size_t sampled) {
   constexpr double kLeastOutlined = 1.0 / 3.0;
-  if (sampled < kMany) return false;
+  if (sampled < kPointsOfGround) return false;
   std::size_t outlined = 0;
   for (std::size_t k = 0; k < curves.size(); ++k)
     if (!is_ground[k]) outlined += curves[k].points.size();
@@ -36,7 +29,7 @@ void drop_ground(std::vector<VoteCurve>& curves, const std::vector<char>& is_gro
 
 bool drop_rough_ground(std::vector<VoteCurve>& curves, std::size_t sampled, double radius,
                        const OcclusionTest& occlusion) {
-  if (sampled < kMany) return false;  // most clouds need no outlines
+  if (sampled < kPointsOfGround) return false;  // most clouds need no outlines
   const std::vector<char> is_ground = find_ground(curves, radius, occlusion);
   if (!is_rough(curves, is_ground, sampled)) return false;
   drop_ground(curves, is_ground);

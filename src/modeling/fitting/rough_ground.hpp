@@ -9,6 +9,10 @@
 
 namespace tubebin::modeling {
 
+/// Points r / 6 apart: twenty tubes, forty radii long, have fewer. Real scans round their edges, and most of a few rods' outlines are
+/// lost: so little is no rough ground.
+constexpr std::size_t kPointsOfGround = 50'000;
+
 /// For each curve, whether the surface goes on beside a tube about it.
 std::vector<char> find_ground(const std::vector<VoteCurve>& curves, double radius, const OcclusionTest& occlusion);
 

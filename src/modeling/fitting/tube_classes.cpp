@@ -29,9 +29,9 @@ constexpr std::size_t kMostPieces = 1500;
 /// A hundred tubes, forty radii long and seen from end to end, have as many a sixth of a radius apart.
 constexpr std::size_t kMostPoints = 300'000;
 
-/// In nats, of a radius' long pieces, which then know it to 1 %. Edges and rims seem round here and there, and of no one
-/// radius. Less is believed where no radius has as much.
-constexpr double kEnoughEvidence = 5000.0;
+/// In nats, of a radius' long pieces. Edges and rims seem round here and there, and of no one radius: up to 8000 on crumpled ground;
+/// ten tubes have 200,000 and more. Less is believed where no radius has as much.
+constexpr double kEnoughEvidence = 20'000.0;
 /// And of a further radius as a part of the first one's: where tubes branch or touch, some surface is as round as a thicker tube.
 constexpr double kFurtherShare = 0.01;
 
@@ -116,17 +116,16 @@ class ClassFinder {
     const std::size_t enough = cloud_.points.size() / 100;
     for (std::size_t k = 0; k < kMostTries && possible_.size() < kMostClasses; ++k) {
       if (rest_ && rest_->points.size() < enough) break;
-      // Rough ground shows all radii.
-      if (!possible_.empty() && possible_.front().has_ground) break;
       const double seen = likeliest_radius(tried, enough);
       if (seen <= 0.0) break;
       PossibleClass found = refined_class(seen, tried);
+      is_rough_ = is_rough_ || found.has_ground || (found.sure.radius <= 0.0 && much_is_left(seen));
       tried.push_back(found.sure.radius > 0.0 ? found.sure.radius : seen);
       set_aside(standing_);
       if (is_believed(found)) {
         set_aside(found.sure.pieces);
         possible_.push_back(std::move(found));
-      } else if (found.evidence > weak.evidence) {
+      } else if (found.evidence > weak.evidence && found.unsure.size() < found.sure.pieces.size()) {
         weak = std::move(found);
       }
     }
@@ -146,14 +145,33 @@ class ClassFinder {
   void estimate_normals(double radius) { normals_.emplace(left(), projection_, reach(radius)); }
 
   /// The radius that most places of the surface show, of those that are not `tried` yet; 0 where fewer than `enough`
-  /// points show one.
+  /// points show one. On rough ground places with a tube's outline count alone.
   double likeliest_radius(const std::vector<double>& tried, std::size_t enough) {
+    constexpr std::size_t kManyPlaces = 10 * kSomePlaces, kFew = 10;
     if (!normals_) estimate_normals(0.0);
-    CurvedPlaces places = find_curved_places(left(), *normals_);
+    CurvedPlaces places = find_curved_places(left(), *normals_, is_rough_ ? kManyPlaces : kSomePlaces);
     if (!rest_) round_ = std::move(places.round);
-    const CommonRadius common = commonest_radius(places.radii, tried);
-    if (common.places < 10 || common.places * left().points.size() < enough * places.looked_at) return 0.0;
+    const CommonRadius common =
+        commonest_radius(is_rough_ ? with_outline(std::move(places.tubular)) : places.tubular, tried);
+    if (common.places < kFew) return 0.0;
+    if (!is_rough_ && common.places * left().points.size() < enough * places.looked_at) return 0.0;
     return common.radius;
+  }
+
+  /// Whether more is left than tubes of the radius show where little else is, as before a known background.
+  bool much_is_left(double radius) const {
+    if (background_is_known_) return false;
+    const double apart = std::max(radius / 6.0, left().spacing), share = left().spacing / apart;
+    return share * share * static_cast<double>(left().points.size()) > kPointsOfGround;
+  }
+
+  /// The places on both sides of which the surface ends as a tube's does.
+  std::vector<TubularPlace> with_outline(std::vector<TubularPlace> places) const {
+    std::erase_if(places, [&](const TubularPlace& place) {
+      const OutlineEvidence outline = occlusion_.with_radius(place.radius).outline(place.center, place.axis);
+      return outline.edge < 1.0 || outline.flat > 0.0;
+    });
+    return places;
   }
 
   /// From the radius that places show to the one that the longest pieces show, and to all of its pieces. What tubes of a
@@ -308,6 +326,7 @@ class ClassFinder {
   double noise_;
   bool background_is_known_;
   Vec3 up_;
+  bool is_rough_ = false;  ///< some of the ground, which shows all radii
   std::optional<FilteredCloud> rest_;
   std::optional<SurfaceNormals> normals_;  ///< of what is left
   std::vector<RoundPlace> round_;

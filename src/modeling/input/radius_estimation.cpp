@@ -10,9 +10,10 @@
 namespace tubebin::modeling {
 namespace {
 
-/// Principal curvatures at a point, 1 / metres, ascending.
+/// Principal curvatures at a point, 1 / metres, ascending, and the direction of the least one.
 struct Curvatures {
   double least = 0.0, most = 0.0;
+  Vec3 axis = Vec3::Zero();
 };
 
 /// The symmetric 2 x 2 map from tangent offsets to changes of the normal `n`, by least squares over the point's neighbours within
@@ -35,9 +36,11 @@ Curvatures curvatures_at(std::uint32_t point, const cloud::Point& n, const cloud
   }
   if (count < 6 || scatter.determinant() <= 0.0) return {};
   const Eigen::Matrix2d shape = turn * scatter.inverse();
-  const Eigen::Vector2d principal =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(0.5 * (shape + shape.transpose())).eigenvalues();
-  return {.least = principal(0), .most = principal(1)};
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(0.5 * (shape + shape.transpose()));
+  const Eigen::Vector2d least = principal.eigenvectors().col(0);
+  return {.least = principal.eigenvalues()(0),
+          .most = principal.eigenvalues()(1),
+          .axis = least.x() * u.cast<double>() + least.y() * v.cast<double>()};
 }
 
 /// A radius and how much it counts: 1 / variance.
@@ -85,23 +88,24 @@ double weighted_median(std::vector<MeasuredRadius> radii) {
 
 }  // namespace
 
-CurvedPlaces find_curved_places(const FilteredCloud& cloud, const SurfaceNormals& surface) {
-  constexpr std::size_t kPlaces = 600;  // some hundred show what is common
+CurvedPlaces find_curved_places(const FilteredCloud& cloud, const SurfaceNormals& surface, std::size_t count) {
   std::vector<std::uint32_t> looked_at;
-  for (std::size_t i = 0; i < cloud.points.size(); i += cloud.points.size() / kPlaces + 1)
+  for (std::size_t i = 0; i < cloud.points.size(); i += cloud.points.size() / count + 1)
     looked_at.push_back(static_cast<std::uint32_t>(i));
   const auto [normals, middles] = surface.planes_at(looked_at);
   const std::vector<Curvatures> curvatures = map_in_parallel(looked_at.size(), [&](std::size_t k) {
     return normals[k].isZero() ? Curvatures{} : curvatures_at(looked_at[k], normals[k], middles[k], cloud, surface);
   });
-  CurvedPlaces places{.radii = {}, .round = {}, .looked_at = looked_at.size()};
+  CurvedPlaces places{.tubular = {}, .round = {}, .looked_at = looked_at.size()};
   for (std::size_t k = 0; k < looked_at.size(); ++k) {
-    const auto [least, most] = curvatures[k];
-    if (most > 0.0 && std::abs(least) < 0.3 * most) places.radii.push_back(1.0 / most);
+    const auto& [least, most, axis] = curvatures[k];
+    const Vec3 middle = middles[k].cast<double>(), normal = normals[k].cast<double>();
+    if (most > 0.0 && std::abs(least) < 0.3 * most)
+      places.tubular.push_back({.radius = 1.0 / most, .center = middle - normal / most, .axis = axis});
     if (least < 0.0 && std::abs(most) < -0.3 * least) ++places.hollow;
     if (least > 0.6 * most) {
       const double radius = 2.0 / (least + most);
-      places.round.push_back({middles[k].cast<double>() - radius * normals[k].cast<double>(), radius});
+      places.round.push_back({.center = middle - radius * normal, .radius = radius});
     }
   }
   return places;
@@ -111,8 +115,10 @@ bool is_tried(double radius, const std::vector<double>& tried) {
   return std::ranges::any_of(tried, [&](double other) { return std::abs(std::log(radius / other)) < 0.15; });
 }
 
-CommonRadius commonest_radius(std::vector<double> radii, const std::vector<double>& tried) {
-  std::erase_if(radii, [&](double radius) { return is_tried(radius, tried); });
+CommonRadius commonest_radius(const std::vector<TubularPlace>& places, const std::vector<double>& tried) {
+  std::vector<double> radii;
+  for (const TubularPlace& place : places)
+    if (!is_tried(place.radius, tried)) radii.push_back(place.radius);
   std::ranges::sort(radii);
   CommonRadius common;
   for (std::size_t first = 0, last = 0; first < radii.size(); ++first) {

@@ -54,10 +54,10 @@ ViewpointCheck check_viewpoint(ModelingInput& input) {
 
 bool is_seen_from_behind(const FilteredCloud& cloud, const ViewProjection& projection) {
   const SurfaceNormals surface(cloud, projection, normal_radius(cloud.spacing, 0.0));
-  const CurvedPlaces places = find_curved_places(cloud, surface);
+  const CurvedPlaces places = find_curved_places(cloud, surface, kSomePlaces);
   // By more than chance: of things with neither side, noise and corners make as many.
   constexpr double kDeviations = 2.5;
-  const auto inward = static_cast<double>(places.hollow), outward = static_cast<double>(places.radii.size());
+  const auto inward = static_cast<double>(places.hollow), outward = static_cast<double>(places.tubular.size());
   return inward - outward > kDeviations * std::sqrt(inward + outward);
 }
 
