@@ -14,6 +14,7 @@
 #include "modeling/fitting/tube_stretches.hpp"
 #include "modeling/fitting/vote_sheets.hpp"
 #include "modeling/input/normals.hpp"
+#include "modeling/input/point_sample.hpp"
 #include "modeling/input/radius_estimation.hpp"
 #include "modeling/median.hpp"
 #include "modeling/parallel.hpp"
@@ -49,10 +50,12 @@ struct ExaminedPiece {
   PieceEvidence evidence;
 };
 
-/// Short and with little evidence, or of a curvature that is a little off: it may be a bit of a tube of another radius.
+/// Short and with little evidence, of a curvature that is a little off, or believed for a known bin's sake: it may be a bit of a
+/// tube of another radius.
 struct UnsurePiece {
   TubePiece piece;
   double off = 0.0;  ///< curvature, in units of 1 / radius
+  std::vector<cloud::Point> points;
 };
 
 /// What is looked through for tubes of a radius, and where their centrelines may be.
@@ -71,16 +74,15 @@ struct PossibleClass {
   double typical_off = 0.0;  ///< the median of their curvatures' errors, in units of 1 / radius
 };
 
-/// The classes with those unsure pieces where no other class surely has a tube.
-std::vector<TubeClass> settled(const std::vector<PossibleClass>& possible) {
+/// The classes with those unsure pieces most of whose points no tube of another class surely explains.
+std::vector<TubeClass> settled(const std::vector<PossibleClass>& possible, double spacing) {
   std::vector<TubeClass> classes;
   for (const PossibleClass& own : possible) {
     classes.push_back(own.sure);
     const auto is_other = [&](const UnsurePiece& unsure) {
       return std::ranges::any_of(possible, [&](const PossibleClass& other) {
-        return &other != &own && std::ranges::any_of(other.sure.pieces, [&](const TubePiece& solid) {
-          return is_inside(unsure.piece, solid);
-        });
+        return &other != &own &&
+               2 * unexplained_points(unsure.points, other.sure.pieces, spacing).size() < unsure.points.size();
       });
     };
     for (const UnsurePiece& unsure : own.unsure)
@@ -107,7 +109,7 @@ class ClassFinder {
       possible_.push_back(pieces_of(search(radius), radius));
       if (radii.size() > 1) set_aside(possible_.back().sure.pieces);
     }
-    return {.classes = settled(possible_), .round = {}};
+    return {.classes = settled(possible_, cloud_.spacing), .round = {}};
   }
 
   TubeClasses find_all() {
@@ -130,7 +132,7 @@ class ClassFinder {
       }
     }
     if (possible_.empty() && weak.evidence > 0.0) possible_.push_back(std::move(weak));
-    std::vector<TubeClass> classes = settled(possible_);
+    std::vector<TubeClass> classes = settled(possible_, cloud_.spacing);
     for (TubeClass& found : classes) drop_streaks(found);
     std::erase_if(classes, [](const TubeClass& found) { return found.pieces.empty(); });
     return {.classes = std::move(classes), .round = std::move(round_)};
@@ -271,7 +273,8 @@ class ClassFinder {
       // Of two normal errors, the plane's is that many standard deviations.
       const double deviations = evidence.curvature / evidence.curvature_error;
       piece.evidence = 0.5 * deviations * deviations;
-      const bool is_unsure = is_doubtful(piece.length(), radius, piece.evidence);
+      const bool is_unsure =
+          is_doubtful(piece.length(), radius, piece.evidence) || (all_is_tube() && !is_tube(evidence, radius, noise_));
       if (!all_is_tube() && stands_upright(piece, up_)) {
         if (!is_unsure) standing_.push_back(std::move(piece));
         continue;
@@ -282,7 +285,8 @@ class ClassFinder {
         offs.push_back(off);
         if (!is_known(piece, off)) found.evidence += piece.evidence;
       }
-      if (is_unsure || off > kSureOff + 2.0 * evidence.curvature_error) found.unsure.push_back({std::move(piece), off});
+      if (is_unsure || off > kSureOff + 2.0 * evidence.curvature_error)
+        found.unsure.push_back({.piece = piece, .off = off, .points = points_at(sample.points, piece.points)});
       else found.sure.pieces.push_back(std::move(piece));
     }
     if (information > 0.0) found.sure.radius_error = radius / std::sqrt(information);
