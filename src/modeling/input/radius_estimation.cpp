@@ -92,14 +92,16 @@ CurvedPlaces find_curved_places(const FilteredCloud& cloud, const SurfaceNormals
   std::vector<std::uint32_t> looked_at;
   for (std::size_t i = 0; i < cloud.points.size(); i += cloud.points.size() / count + 1)
     looked_at.push_back(static_cast<std::uint32_t>(i));
-  const auto [normals, middles] = surface.planes_at(looked_at);
+  const TangentPlanes planes = surface.planes_at(looked_at);
   const std::vector<Curvatures> curvatures = map_in_parallel(looked_at.size(), [&](std::size_t k) {
-    return normals[k].isZero() ? Curvatures{} : curvatures_at(looked_at[k], normals[k], middles[k], cloud, surface);
+    return planes.normals[k].isZero()
+               ? Curvatures{}
+               : curvatures_at(looked_at[k], planes.normals[k], planes.middles[k], cloud, surface);
   });
   CurvedPlaces places{.tubular = {}, .round = {}, .looked_at = looked_at.size()};
   for (std::size_t k = 0; k < looked_at.size(); ++k) {
     const auto& [least, most, axis] = curvatures[k];
-    const Vec3 middle = middles[k].cast<double>(), normal = normals[k].cast<double>();
+    const Vec3 middle = planes.middles[k].cast<double>(), normal = planes.normals[k].cast<double>();
     if (most > 0.0 && std::abs(least) < 0.3 * most)
       places.tubular.push_back({.radius = 1.0 / most, .center = middle - normal / most, .axis = axis});
     if (least < 0.0 && std::abs(most) < -0.3 * least) ++places.hollow;
