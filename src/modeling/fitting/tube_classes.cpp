@@ -273,8 +273,7 @@ class ClassFinder {
       // Of two normal errors, the plane's is that many standard deviations.
       const double deviations = evidence.curvature / evidence.curvature_error;
       piece.evidence = 0.5 * deviations * deviations;
-      const bool is_unsure =
-          is_doubtful(piece.length(), radius, piece.evidence) || (all_is_tube() && !is_tube(evidence, radius, noise_));
+      const bool is_unsure = is_doubtful(piece.length(), radius, piece.evidence) || !is_tube(evidence, radius, noise_);
       if (!all_is_tube() && stands_upright(piece, up_)) {
         if (!is_unsure) standing_.push_back(std::move(piece));
         continue;
