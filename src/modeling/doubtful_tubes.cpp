@@ -9,8 +9,10 @@ namespace tubebin::modeling {
 namespace {
 
 /// Of the evidence that a point of tubes of that radius has on average. A tube seen from the side still has a tenth of it a point,
-/// a short one 7 %; a crease or an edge, which is round in few places, less than 2 %, a short bit of rough ground up to 4.5 %.
-double least_share(const TubeModel& tube) { return tube.length() < kShort * tube.radius ? 0.05 : 0.03; }
+/// a short one 4 %; a crease or an edge, which is round in few places, less than 2 %, a short bit of rough ground up to 4.5 %.
+double least_share(const TubeModel& tube, bool is_rough) {
+  return is_rough && tube.length() < kShort * tube.radius ? 0.05 : 0.03;
+}
 
 struct PointEvidence {
   double evidence = 0.0, points = 0.0;
@@ -28,7 +30,7 @@ std::vector<PointEvidence> point_evidence(const std::vector<TubeModel>& tubes,
 
 }  // namespace
 
-bool drop_doubtful(std::vector<TubeModel>& tubes, const std::vector<cloud::Label>& labels) {
+bool drop_doubtful(std::vector<TubeModel>& tubes, const std::vector<cloud::Label>& labels, bool is_rough) {
   const std::vector<PointEvidence> found = point_evidence(tubes, labels);
   std::map<double, PointEvidence> of_radius;
   for (std::size_t t = 0; t < tubes.size(); ++t) {
@@ -40,7 +42,7 @@ bool drop_doubtful(std::vector<TubeModel>& tubes, const std::vector<cloud::Label
   for (std::size_t t = 0; t < tubes.size(); ++t) {
     const auto& [evidence, points] = found[t];
     const PointEvidence& all = of_radius[tubes[t].radius];
-    const bool is_weak = evidence * all.points < least_share(tubes[t]) * points * all.evidence;
+    const bool is_weak = evidence * all.points < least_share(tubes[t], is_rough) * points * all.evidence;
     if (!is_weak && !is_doubtful(tubes[t].length(), tubes[t].radius, evidence)) kept.push_back(std::move(tubes[t]));
   }
   const bool any = kept.size() < tubes.size();

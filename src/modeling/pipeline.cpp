@@ -18,6 +18,7 @@
 #include "modeling/point_labels.hpp"
 #include "modeling/scene_found.hpp"
 #include "modeling/seen_ends.hpp"
+#include "modeling/steep_ends.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -70,7 +71,9 @@ TubeClasses find_classes(const FilteredCloud& cloud, const ViewProjection& proje
                          const Background& background, const SceneFound& found, const ModelingOptions& options) {
   const std::vector<double> radii = told_radii(options);
   if (options.method == ModelingMethod::region_growing && !radii.empty())
-    return {.classes = {{.radius = radii.front(), .radius_error = 0.0, .pieces = {}}}, .round = {}};
+    return {.classes = {{.radius = radii.front(), .radius_error = 0.0, .pieces = {}}},
+            .round = {},
+            .on_rough_ground = false};
   return find_tube_classes(cloud, projection, scan, background.noise, background.is_known,
                            found.up_is_known ? found.up : Vec3::Zero(), radii);
 }
@@ -181,7 +184,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   scan.add_solids(solids_of(background));
   watch.lap(result.seconds.filtering);
 
-  auto [classes, round] = find_classes(cloud, projection, scan, background, result.found, options);
+  auto [classes, round, on_rough_ground] = find_classes(cloud, projection, scan, background, result.found, options);
   // What lies in a known bin is there to be found, whatever it is.
   std::vector<TubePiece> balls;
   if (input.bin && options.method == ModelingMethod::centerline)
@@ -205,13 +208,14 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
 
   round_tubes(result.tubes);
   PointLabels labels = label_points(cloud.points, result.tubes, background.noise);
-  if (!background.is_known && options.method == ModelingMethod::centerline &&
-      drop_doubtful(result.tubes, labels.labels))
-    labels = label_points(cloud.points, result.tubes, background.noise);
-  if (options.method == ModelingMethod::centerline &&
-      reach_seen_ends(result.tubes, cloud.points, labels.labels, cloud.spacing, result.lengths)) {
+  const auto label_again = [&] {
     round_tubes(result.tubes);
     labels = label_points(cloud.points, result.tubes, background.noise);
+  };
+  if (options.method == ModelingMethod::centerline) {
+    if (!background.is_known && drop_doubtful(result.tubes, labels.labels, on_rough_ground)) label_again();
+    if (reach_steep_ends(result.tubes, cloud, labels.labels, projection, scan)) label_again();
+    if (reach_seen_ends(result.tubes, cloud.points, labels.labels, cloud.spacing, result.lengths)) label_again();
   }
   label(scene, std::move(labels), options, result);
   add_doubts(result);

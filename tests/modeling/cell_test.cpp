@@ -1,6 +1,7 @@
 // Tubes in a bin that stands in a cell, and bins that nobody describes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "modeling/built_scene.hpp"
@@ -59,6 +60,22 @@ TEST(Cell, BottlesAndEdgesAreNoTubesWhereNothingIsTold) {
   const ModelingResult result = model_tubes(input, ModelingOptions{});
   expect_the_tubes_alone(result, cloud);
   EXPECT_EQ(result.radii.size(), 1u);
+}
+
+TEST(Cell, ATubeMayEndUpright) {
+  scene::Scene scene = scene_of(
+      {tube_along({{0.0, -0.1, kRadius}, {0.0, 0.02, 0.08}, {0.0, 0.06, 0.15}, {0.0, 0.08, 0.195}, {0.0, 0.08, 0.235}}),
+       tube_along({{-0.2, -0.05, kRadius}, {-0.1, 0.1, kRadius}})});
+  scene.scanner = looking_from({0.01, 0.0, 1.2});
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
+  ModelingInput input = input_of(cloud, scene.bin);
+  input.bin.reset();
+  const ModelingResult result = model_tubes(input, ModelingOptions{});
+  ASSERT_EQ(result.tubes.size(), 2u);
+  double height = 0.0;
+  for (const TubeModel& tube : result.tubes)
+    for (const Vec3& node : tube.paths.front().nodes) height = std::max(height, node.z());
+  EXPECT_NEAR(height, 0.235, 0.001);
 }
 
 TEST(Cell, FindsTheTubesInABinThatNobodyDescribes) {

@@ -84,6 +84,14 @@ TEST(PieceEvidence, StandsWhereItIsStraightAndUpright) {
   EXPECT_FALSE(stands_upright(piece_through({Vec3::Zero(), Vec3(kRadius * up)}), up));         // too short to tell
 }
 
+TEST(PieceEvidence, AnUprightPieceGoesOnWhereAnotherEnds) {
+  const TubePiece upright = piece_through({Vec3::Zero(), {0.0, 0.0, 0.1}});
+  EXPECT_TRUE(goes_on(upright, {{0.5, 0.0, 0.0}, {0.0, kRadius, -0.5 * kRadius}}));
+  EXPECT_TRUE(goes_on(upright, {{0.0, 0.0, 0.1 + kRadius}}));
+  EXPECT_FALSE(goes_on(upright, {{0.0, 0.0, 0.1 + 2.0 * kRadius}, {0.0, kRadius, 0.05}}));  // the latter leans on it
+  EXPECT_FALSE(goes_on(upright, {}));
+}
+
 TEST(PieceEvidence, IsInsideWhereMostOfItsCentrelineIs) {
   const TubePiece bottle{.nodes = {{0, 0, 0}, {0, 0, 0.3}}, .radius = 0.06, .points = {}};
   EXPECT_TRUE(is_inside(piece_through({{0.05, 0, 0.02}, {0.045, 0.01, 0.1}, {0.05, 0, 0.25}}), bottle));

@@ -148,7 +148,7 @@ TEST(Surroundings, PointsThatLieAloneMakeTheOthersSeemNoFartherApart) {
 /// Floor and two walls of a bin that stands elsewhere than it is said to.
 TEST(BinPose, IsRefinedByFloorAndWalls) {
   ModelingInput input;
-  input.bin = scene::Bin{};
+  input.bin.emplace();
   Pose truth = Pose::Identity();
   truth.linear() = Eigen::AngleAxisd(0.017, Vec3(1, 2, -1).normalized()).toRotationMatrix();
   truth.translation() = Vec3(0.010, -0.006, 0.004);

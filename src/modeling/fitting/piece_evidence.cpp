@@ -195,6 +195,12 @@ bool stands_upright(const TubePiece& piece, const Vec3& up) {
          level < kLean * chord.norm() + kAxisError * piece.radius;
 }
 
+bool goes_on(const TubePiece& upright, const std::vector<Vec3>& ends) {
+  return std::ranges::any_of(ends, [&](const Vec3& end) {
+    return std::min((end - upright.nodes.front()).norm(), (end - upright.nodes.back()).norm()) < 1.5 * upright.radius;
+  });
+}
+
 bool is_inside(const TubePiece& piece, const TubePiece& solid) {
   const double radius = std::max(piece.radius, solid.radius);
   const auto inside = std::ranges::count_if(

@@ -47,6 +47,9 @@ bool is_doubtful(double length, double radius, double evidence);
 /// unit, or zero where it is not known, and nothing stands.
 bool stands_upright(const TubePiece& piece, const Vec3& up);
 
+/// Whether one of the `ends` of pieces that do not stand is where the upright piece ends: a bottle or a column does not go on.
+bool goes_on(const TubePiece& upright, const std::vector<Vec3>& ends);
+
 /// Whether most of the piece's centreline runs nearer to another one than a radius, the larger of the two: both solids can't
 /// be there. That of a streak along a bottle does.
 bool is_inside(const TubePiece& piece, const TubePiece& solid);

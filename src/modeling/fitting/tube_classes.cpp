@@ -107,9 +107,10 @@ class ClassFinder {
     for (const double radius : radii) {
       estimate_normals(radius);
       possible_.push_back(pieces_of(search(radius), radius));
+      is_rough_ = is_rough_ || possible_.back().has_ground;
       if (radii.size() > 1) set_aside(possible_.back().sure.pieces);
     }
-    return {.classes = settled(possible_, cloud_.spacing), .round = {}};
+    return {.classes = settled(possible_, cloud_.spacing), .round = {}, .on_rough_ground = is_rough_};
   }
 
   TubeClasses find_all() {
@@ -135,7 +136,7 @@ class ClassFinder {
     std::vector<TubeClass> classes = settled(possible_, cloud_.spacing);
     for (TubeClass& found : classes) drop_streaks(found);
     std::erase_if(classes, [](const TubeClass& found) { return found.pieces.empty(); });
-    return {.classes = std::move(classes), .round = std::move(round_)};
+    return {.classes = std::move(classes), .round = std::move(round_), .on_rough_ground = is_rough_};
   }
 
  private:
@@ -269,12 +270,14 @@ class ClassFinder {
         .sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}, .has_ground = has_ground};
     double information = 0.0;
     std::vector<double> offs;
-    for (auto& [piece, evidence] : tubes_of(pieces, sample, radius, has_ground)) {
+    std::vector<ExaminedPiece> tubes = tubes_of(pieces, sample, radius, has_ground);
+    const std::vector<Vec3> ends = ends_of_leaning(tubes);
+    for (auto& [piece, evidence] : tubes) {
       // Of two normal errors, the plane's is that many standard deviations.
       const double deviations = evidence.curvature / evidence.curvature_error;
       piece.evidence = 0.5 * deviations * deviations;
       const bool is_unsure = is_doubtful(piece.length(), radius, piece.evidence) || !is_tube(evidence, radius, noise_);
-      if (!all_is_tube() && stands_upright(piece, up_)) {
+      if (!all_is_tube() && stands_upright(piece, up_) && !goes_on(piece, ends)) {
         if (!is_unsure) standing_.push_back(std::move(piece));
         continue;
       }
@@ -291,6 +294,14 @@ class ClassFinder {
     if (information > 0.0) found.sure.radius_error = radius / std::sqrt(information);
     if (!offs.empty()) found.typical_off = median(offs);
     return found;
+  }
+
+  /// Both ends of each piece that does not stand.
+  std::vector<Vec3> ends_of_leaning(const std::vector<ExaminedPiece>& tubes) const {
+    std::vector<Vec3> ends;
+    for (const auto& [piece, evidence] : tubes)
+      if (!stands_upright(piece, up_)) ends.insert(ends.end(), {piece.nodes.front(), piece.nodes.back()});
+    return ends;
   }
 
   /// Whether it fits hardly better than an unsure piece of an earlier class in its place, as far as curvatures can be trusted:

@@ -20,6 +20,7 @@ struct TubeClass {
 struct TubeClasses {
   std::vector<TubeClass> classes;
   std::vector<RoundPlace> round;  ///< of all of the cloud; none where radii are told, and all is tubes of these
+  bool on_rough_ground = false;   ///< some of the ground is rough
 };
 
 /// Finds the pieces of tubes of each radius, the commonest first: the `told` radii (metres), or, where none is told, those
