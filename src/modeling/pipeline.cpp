@@ -81,7 +81,7 @@ TubeClasses find_classes(const FilteredCloud& cloud, const ViewProjection& proje
 /// Of points that the tubes were not looked for in.
 std::vector<cloud::Label> labels_of_further(const std::vector<std::uint32_t>& indices, const FilteredScene& scene,
                                             const std::vector<TubeModel>& tubes) {
-  return label_further_points(points_at(scene.input.points, indices), tubes, scene.background.noise);
+  return label_further_points(points_at(scene.input.points, indices), tubes, scene.background);
 }
 
 /// Labels of the filtered points, of those that lie alone, and of those that a plane took from a tube.
@@ -185,6 +185,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   watch.lap(result.seconds.filtering);
 
   auto [classes, round, on_rough_ground] = find_classes(cloud, projection, scan, background, result.found, options);
+  background.is_rough = on_rough_ground;
   // What lies in a known bin is there to be found, whatever it is.
   std::vector<TubePiece> balls;
   if (input.bin && options.method == ModelingMethod::centerline)
@@ -207,13 +208,13 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   }
 
   round_tubes(result.tubes);
-  PointLabels labels = label_points(cloud.points, result.tubes, background.noise);
+  PointLabels labels = label_points(cloud.points, result.tubes, background);
   const auto label_again = [&] {
     round_tubes(result.tubes);
-    labels = label_points(cloud.points, result.tubes, background.noise);
+    labels = label_points(cloud.points, result.tubes, background);
   };
   if (options.method == ModelingMethod::centerline) {
-    if (!background.is_known && drop_doubtful(result.tubes, labels.labels, on_rough_ground)) label_again();
+    if (!background.is_known && drop_doubtful(result.tubes, labels.labels, background.is_rough)) label_again();
     if (reach_steep_ends(result.tubes, cloud, labels.labels, projection, scan)) label_again();
     if (reach_seen_ends(result.tubes, cloud.points, labels.labels, cloud.spacing, result.lengths)) label_again();
   }
@@ -228,7 +229,7 @@ ModelingResult label_tubes(const ModelingInput& told, std::vector<TubeModel> tub
   result.tubes = std::move(tubes);
   FilteredScene scene = filter_scene(told, options);
   result.found = scene.found;
-  label(scene, label_points(scene.cloud.points, result.tubes, scene.background.noise), options, result);
+  label(scene, label_points(scene.cloud.points, result.tubes, scene.background), options, result);
   return result;
 }
 

@@ -74,23 +74,27 @@ bool is_turned_to(const Vec3& viewpoint, const Vec3& point, const TubeModel& tub
 }
 
 /// Half a radius is what a bridge's guessed course may be off, as much again what a scanner strews about an edge. Where a
-/// tube is seen, two fifths of a radius are far more than fits are off, and keeps clear of what it lies on.
-Reach reach_of(const std::vector<TubeModel>& tubes, double noise) {
+/// tube is seen, two fifths of a radius are far more than fits are off, but at corners, and keep clear of what it lies on; a fifth
+/// is more than fits are off elsewhere, and keeps clear of rough ground.
+Reach reach_of(const std::vector<TubeModel>& tubes, const Background& background) {
   const double least = tubes.empty() ? 1.0 : std::ranges::min_element(tubes, {}, &TubeModel::radius)->radius;
-  return {.seen = std::clamp(5.0 * noise / least, 0.4, 1.0), .end = 1.0, .bridged = 1.0};
+  return {.seen = std::clamp(5.0 * background.noise / least, background.is_rough ? 0.2 : 0.4, 1.0),
+          .end = 1.0,
+          .bridged = 1.0};
 }
 
 }  // namespace
 
-PointLabels label_points(std::span<const cloud::Point> points, std::vector<TubeModel>& tubes, double noise) {
-  auto nearest = nearest_tubes(points, tubes, reach_of(tubes, noise));
-  if (drop_tubes_of_chance(tubes, nearest)) nearest = nearest_tubes(points, tubes, reach_of(tubes, noise));
+PointLabels label_points(std::span<const cloud::Point> points, std::vector<TubeModel>& tubes,
+                         const Background& background) {
+  auto nearest = nearest_tubes(points, tubes, reach_of(tubes, background));
+  if (drop_tubes_of_chance(tubes, nearest)) nearest = nearest_tubes(points, tubes, reach_of(tubes, background));
   return {.labels = labels_of(nearest), .noise = standard_deviation(nearest, tubes)};
 }
 
 std::vector<cloud::Label> label_further_points(std::span<const cloud::Point> points,
-                                               const std::vector<TubeModel>& tubes, double noise) {
-  return labels_of(nearest_tubes(points, tubes, reach_of(tubes, noise)));
+                                               const std::vector<TubeModel>& tubes, const Background& background) {
+  return labels_of(nearest_tubes(points, tubes, reach_of(tubes, background)));
 }
 
 std::vector<cloud::Label> label_set_aside(std::span<const cloud::Point> points, const std::vector<TubeModel>& tubes,

@@ -15,17 +15,17 @@ struct PointLabels {
   double noise = 0.0;                ///< metres, standard deviation of the points' distances to the tubes' surfaces
 };
 
-/// Labels of the points; `tubes` whose points lie anywhere about them, but not on their surface, go. `noise`: metres, of
-/// the scan as far as it is known.
-PointLabels label_points(std::span<const cloud::Point> points, std::vector<TubeModel>& tubes, double noise);
+/// Labels of the points; `tubes` whose points lie anywhere about them, but not on their surface, go.
+PointLabels label_points(std::span<const cloud::Point> points, std::vector<TubeModel>& tubes,
+                         const Background& background);
 
 /// Labels of other points of the same scan.
 std::vector<cloud::Label> label_further_points(std::span<const cloud::Point> points,
-                                               const std::vector<TubeModel>& tubes, double noise);
+                                               const std::vector<TubeModel>& tubes, const Background& background);
 
 /// Labels of points that were set aside with a plane: a tube's where one's surface explains the point as well, where a
 /// plane cuts through it. Not where the surface is turned away from the point's one of `viewpoints`, or, without any, from the
-/// projection's: of a tube along a wall the scanner sees no more there than the wall.
+/// projection's: of a tube along a wall the scanner sees no more there than the wall. `noise`: metres.
 std::vector<cloud::Label> label_set_aside(std::span<const cloud::Point> points, const std::vector<TubeModel>& tubes,
                                           double noise, const ViewProjection& projection,
                                           std::span<const cloud::Point> viewpoints);

@@ -31,7 +31,7 @@ TEST(DoubtfulTubes, AShortOneWithFewPointsMayBeOne) {
 
 TEST(DoubtfulTubes, AShortOneOnRoughGroundNeedsMoreAPoint) {
   std::vector<TubeModel> tubes = {tube_of(0.5, 0.01, 1e5), tube_of(0.07, 0.01, 380.0), tube_of(0.3, 0.01, 380.0),
-                                  tube_of(0.07, 0.01, 600.0)};
+                                  tube_of(0.07, 0.01, 1000.0)};
   std::vector<cloud::Label> labels(1000, 1);
   for (const cloud::Label label : {2, 3, 4}) labels.insert(labels.end(), 100, label);
   EXPECT_FALSE(drop_doubtful(tubes, labels, false));

@@ -21,7 +21,7 @@ TEST(PointLabels, FurtherPointsLeaveTheTubesAsTheyAre) {
   std::vector<cloud::Point> points = upper_half_of(first).points;
   const std::size_t of_first = points.size();
   for (const cloud::Point& point : upper_half_of(second).points) points.push_back(point);
-  const PointLabels modelled = label_points(points, tubes, 0.0);
+  const PointLabels modelled = label_points(points, tubes, {});
   ASSERT_EQ(tubes.size(), 2u);
   for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(modelled.labels[i], i < of_first ? 1u : 2u);
 
@@ -29,7 +29,7 @@ TEST(PointLabels, FurtherPointsLeaveTheTubesAsTheyAre) {
   std::vector<cloud::Point> further = upper_half_of(first, 0.7 * kRadius).points;
   const std::size_t strays = further.size();
   for (const cloud::Point& point : upper_half_of(second).points) further.push_back(point);
-  const std::vector<cloud::Label> labels = label_further_points(further, tubes, 0.0);
+  const std::vector<cloud::Label> labels = label_further_points(further, tubes, {});
   for (std::size_t i = strays; i < further.size(); ++i) ASSERT_EQ(labels[i], 2u);
 }
 
@@ -43,9 +43,20 @@ TEST(PointLabels, BeyondAnEndLiesTheTubeAndNotTheFloorBeneath) {
   const auto beyond = static_cast<float>(0.1 + 0.4 * kRadius), radius = static_cast<float>(kRadius);
   points.emplace_back(beyond, 0.0f, radius);
   for (const float side : {0.5f, 0.7f, 0.9f}) points.emplace_back(beyond, side * radius, -radius);
-  const PointLabels labels = label_points(points, tubes, 0.0);
+  const PointLabels labels = label_points(points, tubes, {});
   EXPECT_EQ(labels.labels[seen], 1u);
   for (std::size_t i = seen + 1; i < points.size(); ++i) EXPECT_EQ(labels.labels[i], 0u) << points[i].transpose();
+}
+
+TEST(PointLabels, OnRoughGroundLessAboutATubeIsItsOwn) {
+  const std::vector<Vec3> nodes = {{-0.1, 0, 0}, {0.1, 0, 0}};
+  std::vector<TubeModel> tubes = {model_along(nodes)};
+  std::vector<cloud::Point> points = upper_half_of(nodes).points;
+  points.push_back(Vec3(0.0, 1.3 * kRadius, 0.0).cast<float>());
+  EXPECT_EQ(label_points(points, tubes, {}).labels.back(), 1u);
+  Background rough;
+  rough.is_rough = true;
+  EXPECT_EQ(label_points(points, tubes, rough).labels.back(), 0u);
 }
 
 /// A tube touches a wall that the scanner sees from before it: what is seen where they touch is the wall. From behind it, as

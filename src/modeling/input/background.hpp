@@ -17,6 +17,7 @@ struct Background {
   bool is_known = false;                  ///< of a known bin: what is left is tubes, as far as anybody knows
   double noise = 0.0;                     ///< metres, across the largest regions; 0 where there is none
   double spacing = 0.0;                   ///< metres between neighbouring points at their median range
+  bool is_rough = false;                  ///< some of the ground, as the search for radii finds it
   bool is_noisy = false;                  ///< the scan, or one of its views, as is_noisy() has it
 };
 
