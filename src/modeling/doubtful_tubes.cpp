@@ -1,5 +1,7 @@
 #include "modeling/doubtful_tubes.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
 
@@ -28,9 +30,16 @@ std::vector<PointEvidence> point_evidence(const std::vector<TubeModel>& tubes,
   return found;
 }
 
+/// Whether one of the tubes is as long, to a radius.
+bool has_length(const std::vector<TubeModel>& tubes, double length) {
+  return std::ranges::any_of(tubes,
+                             [&](const TubeModel& tube) { return std::abs(tube.length() - length) < tube.radius; });
+}
+
 }  // namespace
 
-bool drop_doubtful(std::vector<TubeModel>& tubes, const std::vector<cloud::Label>& labels, bool is_rough) {
+bool drop_doubtful(std::vector<TubeModel>& tubes, std::vector<double>& lengths, const std::vector<cloud::Label>& labels,
+                   bool is_rough) {
   const std::vector<PointEvidence> found = point_evidence(tubes, labels);
   std::map<double, PointEvidence> of_radius;
   for (std::size_t t = 0; t < tubes.size(); ++t) {
@@ -38,16 +47,17 @@ bool drop_doubtful(std::vector<TubeModel>& tubes, const std::vector<cloud::Label
     all.evidence += found[t].evidence;
     all.points += found[t].points;
   }
-  std::vector<TubeModel> kept;
+  std::vector<TubeModel> kept, dropped;
   for (std::size_t t = 0; t < tubes.size(); ++t) {
     const auto& [evidence, points] = found[t];
     const PointEvidence& all = of_radius[tubes[t].radius];
     const bool is_weak = evidence * all.points < least_share(tubes[t], is_rough) * points * all.evidence;
-    if (!is_weak && !is_doubtful(tubes[t].length(), tubes[t].radius, evidence)) kept.push_back(std::move(tubes[t]));
+    const bool goes = is_weak || is_doubtful(tubes[t].length(), tubes[t].radius, evidence);
+    (goes ? dropped : kept).push_back(std::move(tubes[t]));
   }
-  const bool any = kept.size() < tubes.size();
   tubes = std::move(kept);
-  return any;
+  std::erase_if(lengths, [&](double length) { return has_length(dropped, length) && !has_length(tubes, length); });
+  return !dropped.empty();
 }
 
 }  // namespace tubebin::modeling

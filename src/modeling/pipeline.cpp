@@ -214,7 +214,8 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
     labels = label_points(cloud.points, result.tubes, background);
   };
   if (options.method == ModelingMethod::centerline) {
-    if (!background.is_known && drop_doubtful(result.tubes, labels.labels, background.is_rough)) label_again();
+    if (!background.is_known && drop_doubtful(result.tubes, result.lengths, labels.labels, background.is_rough))
+      label_again();
     if (reach_steep_ends(result.tubes, cloud, labels.labels, projection, scan)) label_again();
     if (reach_seen_ends(result.tubes, cloud.points, labels.labels, cloud.spacing, result.lengths)) label_again();
   }
