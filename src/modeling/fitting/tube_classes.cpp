@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 
 #include "modeling/fitting/centerline_pieces.hpp"
 #include "modeling/fitting/centerline_segmentation.hpp"
 #include "modeling/fitting/piece_cleaning.hpp"
 #include "modeling/fitting/piece_evidence.hpp"
+#include "modeling/fitting/possible_classes.hpp"
 #include "modeling/fitting/radius_refining.hpp"
 #include "modeling/fitting/rough_ground.hpp"
 #include "modeling/fitting/tube_stretches.hpp"
@@ -24,9 +24,6 @@ namespace {
 
 constexpr std::size_t kMostClasses = 4, kMostTries = 8;
 
-/// So many pieces are joined in a second or two; a pile of a hundred tubes has some five hundred.
-constexpr std::size_t kMostPieces = 1500;
-
 /// A hundred tubes, forty radii long and seen from end to end, have as many a sixth of a radius apart.
 constexpr std::size_t kMostPoints = 300'000;
 
@@ -39,23 +36,9 @@ constexpr double kFurtherShare = 0.01;
 /// In units of 1 / radius: so far off bends and joints put a tube's curvature.
 constexpr double kSureOff = 0.05;
 
-void keep_surest(std::vector<TubePiece>& pieces) {
-  if (pieces.size() <= kMostPieces) return;
-  std::ranges::stable_sort(pieces, std::greater<>(), &TubePiece::evidence);
-  pieces.resize(kMostPieces);
-}
-
 struct ExaminedPiece {
   TubePiece piece;
   PieceEvidence evidence;
-};
-
-/// Short and with little evidence, of a curvature that is a little off, or believed for a known bin's sake: it may be a bit of a
-/// tube of another radius.
-struct UnsurePiece {
-  TubePiece piece;
-  double off = 0.0;  ///< curvature, in units of 1 / radius
-  std::vector<cloud::Point> points;
 };
 
 /// What is looked through for tubes of a radius, and where their centrelines may be.
@@ -64,33 +47,6 @@ struct Search {
   SegmentCurves curves;
   bool has_ground = false;  ///< that is rough, and whose curves were left out
 };
-
-/// What was found of a radius, before others are known.
-struct PossibleClass {
-  TubeClass sure;
-  std::vector<UnsurePiece> unsure;
-  double evidence = 0.0;     ///< nats, of its long pieces
-  bool has_ground = false;   ///< that is rough
-  double typical_off = 0.0;  ///< the median of their curvatures' errors, in units of 1 / radius
-};
-
-/// The classes with those unsure pieces most of whose points no tube of another class surely explains.
-std::vector<TubeClass> settled(const std::vector<PossibleClass>& possible, double spacing) {
-  std::vector<TubeClass> classes;
-  for (const PossibleClass& own : possible) {
-    classes.push_back(own.sure);
-    const auto is_other = [&](const UnsurePiece& unsure) {
-      return std::ranges::any_of(possible, [&](const PossibleClass& other) {
-        return &other != &own &&
-               2 * unexplained_points(unsure.points, other.sure.pieces, spacing).size() < unsure.points.size();
-      });
-    };
-    for (const UnsurePiece& unsure : own.unsure)
-      if (!is_other(unsure)) classes.back().pieces.push_back(unsure.piece);
-    keep_surest(classes.back().pieces);
-  }
-  return classes;
-}
 
 class ClassFinder {
  public:
@@ -164,8 +120,8 @@ class ClassFinder {
   /// Whether more is left than tubes of the radius show where little else is, as before a known background.
   bool much_is_left(double radius) const {
     if (background_is_known_) return false;
-    const double apart = std::max(radius / 6.0, left().spacing), share = left().spacing / apart;
-    return share * share * static_cast<double>(left().points.size()) > kPointsOfGround;
+    const double thinner = left().spacing / std::max(radius / 6.0, left().spacing);
+    return thinner * thinner * static_cast<double>(left().points.size()) > kPointsOfGround;
   }
 
   /// The places on both sides of which the surface ends as a tube's does.
@@ -285,7 +241,7 @@ class ClassFinder {
       const double off = std::abs(evidence.curvature - 1.0);
       if (piece.length() >= kShort * radius) {
         offs.push_back(off);
-        if (!is_known(piece, off)) found.evidence += piece.evidence;
+        if (!is_known(piece, off, possible_)) found.evidence += piece.evidence;
       }
       if (is_unsure || off > kSureOff + 2.0 * evidence.curvature_error)
         found.unsure.push_back({.piece = piece, .off = off, .points = points_at(sample.points, piece.points)});
@@ -302,16 +258,6 @@ class ClassFinder {
     for (const auto& [piece, evidence] : tubes)
       if (!stands_upright(piece, up_)) ends.insert(ends.end(), {piece.nodes.front(), piece.nodes.back()});
     return ends;
-  }
-
-  /// Whether it fits hardly better than an unsure piece of an earlier class in its place, as far as curvatures can be trusted:
-  /// real scans blur them by more than their points scatter.
-  bool is_known(const TubePiece& piece, double off) const {
-    return std::ranges::any_of(possible_, [&](const PossibleClass& other) {
-      return std::ranges::any_of(other.unsure, [&](const UnsurePiece& unsure) {
-        return unsure.off < 2.0 * off + 4.0 * other.typical_off && is_inside(piece, unsure.piece);
-      });
-    });
   }
 
   /// A streak of a bottle's side may look like a tube of a smaller radius.
