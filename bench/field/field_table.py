@@ -130,8 +130,10 @@ def score(truth, full):
     counts = np.zeros((truth.max() + 1, found.max() + 1), int)
     np.add.at(counts, (truth, found), 1)
     tubes = counts[1:].sum()
-    row, column = linear_sum_assignment(-counts[1:, 1:])
     off = int((counts[:, 1:].sum(0) > 0).sum()) - int((counts[1:].sum(1) > 0).sum())
+    if tubes == 0:  # an empty bin: nothing to miss, and any false point is too many
+        return 1.0, float('inf') if counts[0, 1:].any() else 0.0, off
+    row, column = linear_sum_assignment(-counts[1:, 1:])
     return counts[1:, 1:][row, column].sum() / tubes, counts[0, 1:].sum() / tubes, off
 
 
