@@ -211,7 +211,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   PointLabels labels = label_points(cloud.points, result.tubes, background);
   const auto label_again = [&] {
     round_tubes(result.tubes);
-    labels = label_points(cloud.points, result.tubes, background);
+    labels = label_points(scene.cloud.points, result.tubes, scene.background);
   };
   if (options.method == ModelingMethod::centerline) {
     if (!background.is_known && drop_doubtful(result.tubes, result.lengths, labels.labels, background.is_rough))
