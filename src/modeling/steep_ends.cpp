@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "modeling/input/point_sample.hpp"
 #include "modeling/labeling.hpp"
 
 namespace tubebin::modeling {
@@ -135,9 +136,7 @@ Segment about_ends(const std::vector<TubeModel>& tubes, const FilteredCloud& clo
     for (const TubePath& path : tube.paths)
       for (const Vec3* tip : {&path.nodes.front(), &path.nodes.back()})
         balls.push_back({.nodes = {tip, 1}, .radius = kNear * tube.radius});
-  std::vector<cloud::Point> points;
-  for (const std::uint32_t i : indices) points.push_back(cloud.points[i]);
-  const std::vector<char> is_near = within_surfaces(points, balls, 0.0);
+  const std::vector<char> is_near = within_surfaces(points_at(cloud.points, indices), balls, 0.0);
   Segment found;
   for (std::size_t k = 0; k < indices.size(); ++k)
     if (is_near[k]) found.push_back(indices[k]);
