@@ -7,7 +7,7 @@ packages=(
   g++ cmake ninja-build ccache pkg-config
   libode-dev libembree-dev libosmesa6-dev libpng-dev zlib1g-dev liblzf-dev
   libeigen3-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev libfmt-dev libxxhash-dev libarchive-dev libsleef-dev libtbb-dev
-  help2man
+  libboost-dev help2man
 )
 if [ "${1:-}" = --tests ]; then
   shift
