@@ -24,9 +24,9 @@ scene::Scene one_over_three_in_a_cell() {
   return scene;
 }
 
-/// All four tubes are found, and nothing else is taken for one.
-void expect_the_tubes_alone(const ModelingResult& result, const cloud::Cloud& cloud) {
-  EXPECT_EQ(result.tubes.size(), 4u);
+/// All tubes are found, and nothing else is taken for one.
+void expect_the_tubes_alone(const ModelingResult& result, const cloud::Cloud& cloud, std::size_t tubes = 4) {
+  EXPECT_EQ(result.tubes.size(), tubes);
   EXPECT_NEAR(result.radius, kRadius, 0.01 * kRadius);
   std::size_t of_tubes = 0, found = 0, false_points = 0;
   for (const cloud::Label label : cloud.labels) of_tubes += label > 0;
@@ -76,6 +76,18 @@ TEST(Cell, ATubeMayEndUpright) {
   for (const TubeModel& tube : result.tubes)
     for (const Vec3& node : tube.paths.front().nodes) height = std::max(height, node.z());
   EXPECT_NEAR(height, 0.235, 0.001);
+}
+
+TEST(Cell, ATubeMayStandAmongTubesOfItsRadius) {
+  scene::Scene scene = one_over_three_in_a_cell();
+  scene.tubes.push_back(tube_along({{0.1, 0.1, 0.002}, {0.1, 0.1, 0.3}}));
+  scene.scanner.position = {0.0, -0.8, 1.4};
+  scene.scanner.rotation_deg = {30.0, 0.0, 0.0};
+  const cloud::Cloud cloud = scan::scan(scene).cloud;
+  ModelingInput input = input_of(cloud, scene.bin);
+  input.bin.reset();
+  for (const ModelingOptions& options : {ModelingOptions{}, known_radius()})
+    expect_the_tubes_alone(model_tubes(input, options), cloud, 5);
 }
 
 TEST(Cell, FindsTheTubesInABinThatNobodyDescribes) {

@@ -60,6 +60,7 @@ class ClassFinder {
         up_(up) {}
 
   TubeClasses find_told(const std::vector<double>& radii) {
+    radii_are_told_ = true;
     for (const double radius : radii) {
       estimate_normals(radius);
       possible_.push_back(pieces_of(search(radius), radius));
@@ -226,6 +227,7 @@ class ClassFinder {
         .sure = {.radius = radius, .radius_error = 0.0, .pieces = {}}, .unsure = {}, .has_ground = has_ground};
     double information = 0.0;
     std::vector<double> offs;
+    std::vector<TubePiece> upright;
     std::vector<ExaminedPiece> tubes = tubes_of(pieces, sample, radius, has_ground);
     const std::vector<Vec3> ends = ends_of_leaning(tubes);
     for (auto& [piece, evidence] : tubes) {
@@ -233,20 +235,24 @@ class ClassFinder {
       const double deviations = evidence.curvature / evidence.curvature_error;
       piece.evidence = 0.5 * deviations * deviations;
       const bool is_unsure = is_doubtful(piece.length(), radius, piece.evidence) || !is_tube(evidence, radius, noise_);
+      const double off = std::abs(evidence.curvature - 1.0);
+      const bool has_radius = off <= kSureOff + 2.0 * evidence.curvature_error;
       if (!all_is_tube() && stands_upright(piece, up_) && !goes_on(piece, ends)) {
-        if (!is_unsure) standing_.push_back(std::move(piece));
+        if (!is_unsure) (has_radius ? upright : standing_).push_back(std::move(piece));
         continue;
       }
       information += 1.0 / (evidence.curvature_error * evidence.curvature_error);
-      const double off = std::abs(evidence.curvature - 1.0);
       if (piece.length() >= kShort * radius) {
         offs.push_back(off);
         if (!is_known(piece, off, possible_)) found.evidence += piece.evidence;
       }
-      if (is_unsure || off > kSureOff + 2.0 * evidence.curvature_error)
+      if (is_unsure || !has_radius)
         found.unsure.push_back({.piece = piece, .off = off, .points = points_at(sample.points, piece.points)});
       else found.sure.pieces.push_back(std::move(piece));
     }
+    // A bottle or a column has a radius of its own: what stands among tubes of its radius is one of them.
+    std::vector<TubePiece>& kept_as = radii_are_told_ || is_believed(found) ? found.sure.pieces : standing_;
+    std::ranges::move(upright, std::back_inserter(kept_as));
     if (information > 0.0) found.sure.radius_error = radius / std::sqrt(information);
     if (!offs.empty()) found.typical_off = median(offs);
     return found;
@@ -286,6 +292,7 @@ class ClassFinder {
   double noise_;
   bool background_is_known_;
   Vec3 up_;
+  bool radii_are_told_ = false;
   bool is_rough_ = false;  ///< some of the ground, which shows all radii
   std::optional<FilteredCloud> rest_;
   std::optional<SurfaceNormals> normals_;  ///< of what is left
