@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "modeling/doubtful_tubes.hpp"
+#include "modeling/end_discs.hpp"
 #include "modeling/fitting/ball_finding.hpp"
 #include "modeling/fitting/piece_cleaning.hpp"
 #include "modeling/fitting/tube_classes.hpp"
@@ -218,6 +219,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
       label_again();
     if (reach_steep_ends(result.tubes, cloud, labels.labels, projection, scan)) label_again();
     if (reach_seen_ends(result.tubes, cloud.points, labels.labels, cloud.spacing, result.lengths)) label_again();
+    if (reach_end_discs(result.tubes, cloud, labels.labels, projection, scan, result.lengths)) label_again();
   }
   label(scene, std::move(labels), options, result);
   add_doubts(result);

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "modeling/labeling.hpp"
+#include "modeling/input/point_sample.hpp"
+#include "modeling/path_ends.hpp"
 #include "tubebin/modeling/filtering.hpp"
 
 namespace tubebin::modeling {
@@ -14,17 +15,6 @@ namespace {
 constexpr double kFarthest = 2.5, kGap = 0.25, kWide = 1.1, kAround = 1.5;
 /// Of the points that an end seen straight on has; a wire, a rim or strays are fewer.
 constexpr double kLeastPart = 0.25;
-
-struct PathEnd {
-  Vec3 tip, outward;  ///< outward: unit, over the last radius of the path
-};
-
-PathEnd last_end(const std::vector<Vec3>& nodes, double radius) {
-  const Vec3& tip = nodes.back();
-  std::size_t k = nodes.size() - 2;
-  while (k > 0 && (nodes[k] - tip).norm() < radius) --k;
-  return {tip, (tip - nodes[k]).normalized()};
-}
 
 /// A point beyond an end: how far along the path's axis, and off it.
 struct PlaceBeyond {
@@ -90,21 +80,11 @@ double missing_length(const TubeModel& tube, const std::vector<double>& lengths)
 /// Points without a label that are no farther from a tube's end than the tube may reach beyond it.
 std::vector<Vec3> unlabeled_about_ends(const std::vector<TubeModel>& tubes, std::span<const cloud::Point> points,
                                        std::span<const cloud::Label> labels, const std::vector<double>& lengths) {
-  std::vector<TubeSurface> balls;
-  for (const TubeModel& tube : tubes) {
-    const double reach = std::max(kFarthest * tube.radius, missing_length(tube, lengths) + tube.radius / 2.0);
-    for (const TubePath& path : tube.paths)
-      for (const Vec3* tip : {&path.nodes.front(), &path.nodes.back()})
-        balls.push_back({.nodes = {tip, 1}, .radius = reach + kAround * tube.radius});
-  }
-  std::vector<cloud::Point> unlabeled;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (labels[i] == 0) unlabeled.push_back(points[i]);
-  const std::vector<char> is_near = within_surfaces(unlabeled, balls, 0.0);
-  std::vector<Vec3> near;
-  for (std::size_t k = 0; k < unlabeled.size(); ++k)
-    if (is_near[k]) near.push_back(unlabeled[k].cast<double>());
-  return near;
+  const auto reach = [&](const TubeModel& tube) {
+    const double beyond = std::max(kFarthest * tube.radius, missing_length(tube, lengths) + tube.radius / 2.0);
+    return beyond + kAround * tube.radius;
+  };
+  return positions_at(points, about_ends(tubes, points, points_without_label(labels), reach));
 }
 
 }  // namespace
@@ -116,7 +96,7 @@ bool reach_seen_ends(std::vector<TubeModel>& tubes, std::span<const cloud::Point
   for (TubeModel& tube : tubes)
     for (TubePath& path : tube.paths)
       for (int end = 0; end < 2 && path.nodes.size() > 1; ++end) {
-        std::ranges::reverse(path.nodes);
+        turn_about(path);
         const PathEnd last = last_end(path.nodes, tube.radius);
         std::optional<double> beyond = seen_from_the_front(last, tube.radius, spacing, unlabeled);
         if (const double missing = missing_length(tube, lengths); !beyond && missing > 0.0)

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "modeling/input/point_sample.hpp"
-#include "modeling/labeling.hpp"
+#include "modeling/path_ends.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -109,65 +109,32 @@ class SteepSides {
   OcclusionTest occlusion_;
 };
 
-Segment near(const FilteredCloud& cloud, const Segment& indices, const Vec3& place, double distance) {
-  Segment found;
-  for (const std::uint32_t i : indices)
-    if ((cloud.points[i].cast<double>() - place).squaredNorm() < distance * distance) found.push_back(i);
-  return found;
-}
-
-std::vector<Vec3> positions(const FilteredCloud& cloud, const Segment& indices) {
-  std::vector<Vec3> points;
-  for (const std::uint32_t i : indices) points.push_back(cloud.points[i].cast<double>());
-  return points;
-}
-
-Segment points_without_label(const std::vector<cloud::Label>& labels) {
-  Segment found;
-  for (std::uint32_t i = 0; i < labels.size(); ++i)
-    if (labels[i] == 0) found.push_back(i);
-  return found;
-}
-
-/// Those of the points that a step from one of the tubes' ends would look at.
-Segment about_ends(const std::vector<TubeModel>& tubes, const FilteredCloud& cloud, const Segment& indices) {
-  std::vector<TubeSurface> balls;
-  for (const TubeModel& tube : tubes)
-    for (const TubePath& path : tube.paths)
-      for (const Vec3* tip : {&path.nodes.front(), &path.nodes.back()})
-        balls.push_back({.nodes = {tip, 1}, .radius = kNear * tube.radius});
-  const std::vector<char> is_near = within_surfaces(points_at(cloud.points, indices), balls, 0.0);
-  Segment found;
-  for (std::size_t k = 0; k < indices.size(); ++k)
-    if (is_near[k]) found.push_back(indices[k]);
-  return found;
-}
-
 }  // namespace
 
 bool reach_steep_ends(std::vector<TubeModel>& tubes, const FilteredCloud& cloud,
                       const std::vector<cloud::Label>& labels, const ViewProjection& projection,
                       const OcclusionTest& scan) {
-  const Segment unlabeled = points_without_label(labels), first = about_ends(tubes, cloud, unlabeled);
+  const Segment unlabeled = points_without_label(labels);
+  const Segment first =
+      about_ends(tubes, cloud.points, unlabeled, [](const TubeModel& tube) { return kNear * tube.radius; });
   bool any = false;
   for (TubeModel& tube : tubes) {
     const SteepSides sides(tube.radius, cloud.spacing, scan);
     for (TubePath& path : tube.paths)
       for (int end = 0; end < 2 && path.nodes.size() > 1; ++end) {
-        std::ranges::reverse(path.nodes);
-        std::reverse(path.bridged.begin(), path.bridged.end());
-        Segment beyond = near(cloud, first, path.nodes.back(), kNear * tube.radius);
+        turn_about(path);
+        Segment beyond = near(path.nodes.back(), kNear * tube.radius, cloud.points, first);
         if (beyond.size() < kFewPoints) continue;
         const Vec3 viewpoint = viewpoint_of(cloud, beyond, projection);
         Vec3 outward = (path.nodes.back() - path.nodes[path.nodes.size() - 2]).normalized();
         for (int step = 0; step < kMostSteps; ++step) {
-          const Vec3 next = sides.next(path.nodes.back(), outward, viewpoint, positions(cloud, beyond));
+          const Vec3 next = sides.next(path.nodes.back(), outward, viewpoint, positions_at(cloud.points, beyond));
           if (next.isZero()) break;
           path.nodes.push_back(path.nodes.back() + next);
           path.bridged.push_back(false);
           any = true;
           outward = next.normalized();
-          beyond = near(cloud, unlabeled, path.nodes.back(), kNear * tube.radius);
+          beyond = near(path.nodes.back(), kNear * tube.radius, cloud.points, unlabeled);
         }
       }
   }

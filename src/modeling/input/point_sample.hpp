@@ -18,6 +18,14 @@ inline std::vector<cloud::Point> points_at(std::span<const cloud::Point> points,
   return selected;
 }
 
+/// The same in double precision.
+inline std::vector<Vec3> positions_at(std::span<const cloud::Point> points, std::span<const std::uint32_t> indices) {
+  std::vector<Vec3> positions;
+  positions.reserve(indices.size());
+  for (const std::uint32_t i : indices) positions.push_back(points[i].cast<double>());
+  return positions;
+}
+
 /// Of at most about `size` points of a scan, spread evenly over it, those that are finite.
 inline std::vector<Vec3> sample_of(std::span<const cloud::Point> points, std::size_t size) {
   std::vector<Vec3> sample;
