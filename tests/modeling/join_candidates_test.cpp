@@ -55,6 +55,18 @@ TEST_F(JoinCandidates, LeadNotThroughAnotherTube) {
   EXPECT_LT(bridge->cost, 0.0);
 }
 
+TEST_F(JoinCandidates, DoNotTurnBackToATubeAlongside) {
+  const auto may_turn_back = [&](double apart) {
+    const std::vector<TubePiece> pieces = {straight(0.0, -0.25, -0.02), straight(apart, -0.25, -0.02)};
+    const OcclusionTest scan = occlusion();
+    return std::ranges::any_of(
+        find_possible_joins(pieces, find_piece_ends(pieces, scan, 0.5), scan, kBendingRate, 100.0),
+        [](const PossibleJoin& join) { return join.end_a == 1 && join.end_b == 3; });
+  };
+  EXPECT_FALSE(may_turn_back(2.0 * kRadius));
+  EXPECT_TRUE(may_turn_back(4.0 * kRadius));
+}
+
 TEST_F(JoinCandidates, AbsorbTheFragmentsOnTheirWay) {
   std::vector<TubePiece> pieces = in_line(0.0);
   pieces.push_back(straight(0.0, -0.004, 0.006));

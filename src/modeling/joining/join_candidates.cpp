@@ -43,6 +43,13 @@ bool have_met(const Vec3& chord, const Vec3& onward, double radius) {
   return chord.norm() <= (chord.dot(onward) < 0.0 ? 1.5 * radius : radius);
 }
 
+/// Whether a bridge would turn by more than 120 degrees within the width of two tubes side by side: what hides two such tubes
+/// hides their ends alike, and no tube bends about its own side.
+bool is_hairpin(const PieceEnd& a, const PieceEnd& b, double radius) {
+  if (a.direction_variance + b.direction_variance > 1.0) return false;  // of fragments shorter than a radius
+  return a.outward.dot(b.outward) > 0.5 && (b.position - a.position).norm() < 3.0 * radius;
+}
+
 /// -log of the likelihood ratio of "the tube goes on from a to b" to "b is some other tube's end".
 /// A tube's direction walks at random along it with variance q a metre and axis. Its place and direction after a
 /// length D are then normal with covariance [q D^3 / 3, q D^2 / 2; q D^2 / 2, q D] an axis, of determinant q^2 D^4 / 12,
@@ -227,7 +234,7 @@ std::vector<PossibleJoin> find_possible_joins(const std::vector<TubePiece>& piec
   for (const TubePiece& piece : pieces) lengths.push_back(piece.length());
   for (std::uint32_t a = 0; a < ends.size(); ++a)
     for (std::uint32_t b = a + 1; b < ends.size(); ++b) {
-      if (a / 2 == b / 2 || ends[a].is_on_side || ends[b].is_on_side) continue;
+      if (a / 2 == b / 2 || ends[a].is_on_side || ends[b].is_on_side || is_hairpin(ends[a], ends[b], radius)) continue;
       double cost = shape_cost(ends[a], ends[b], bending_rate, radius, density);
       if (!(cost < cost_limit)) continue;
       cost += free_ends_cost(ends[a], ends[b], occlusion, radius);
