@@ -67,6 +67,26 @@ TEST_F(JoinCandidates, DoNotTurnBackToATubeAlongside) {
   EXPECT_TRUE(may_turn_back(4.0 * kRadius));
 }
 
+TEST_F(JoinCandidates, TurnNoMoreThanTheScenesTubesDo) {
+  const double middle = -0.05;
+  const std::vector<TubePiece> corner = {
+      straight(0.0, -0.25, -0.02), {.nodes = {{0.0, 0.02, 0.0}, {0.0, 0.25, 0.0}}, .radius = kRadius, .points = {}}};
+  const TubePiece bent = {
+      .nodes = {{-0.25, 0.4, 0}, {middle, 0.4, 0}, {middle, 0.6, 0}}, .radius = kRadius, .points = {}};
+  const auto cost_among = [&](const TubePiece& other, std::size_t count) {
+    std::vector<TubePiece> pieces = corner;
+    pieces.insert(pieces.end(), count, other);
+    const OcclusionTest scan = occlusion();
+    const std::vector<PieceEnd> ends = find_piece_ends(pieces, scan, 0.5);
+    for (const PossibleJoin& join : find_possible_joins(pieces, ends, scan, kBendingRate, 100.0))
+      if (join.end_a == 1 && join.end_b == 2) return join.cost;
+    return std::numeric_limits<double>::infinity();
+  };
+  TubePiece even = bent;
+  even.nodes = {{-0.25, 0.4, 0}, {-0.15, 0.5, 0}, {middle, 0.6, 0}};
+  EXPECT_GT(cost_among(even, 30), cost_among(bent, 30) + 1.0);
+}
+
 TEST_F(JoinCandidates, AbsorbTheFragmentsOnTheirWay) {
   std::vector<TubePiece> pieces = in_line(0.0);
   pieces.push_back(straight(0.0, -0.004, 0.006));

@@ -43,11 +43,13 @@ bool have_met(const Vec3& chord, const Vec3& onward, double radius) {
   return chord.norm() <= (chord.dot(onward) < 0.0 ? 1.5 * radius : radius);
 }
 
+/// Whether the directions of both ends are known: fragments shorter than a radius have none.
+bool have_directions(const PieceEnd& a, const PieceEnd& b) { return a.direction_variance + b.direction_variance < 1.0; }
+
 /// Whether a bridge would turn by more than 120 degrees within the width of two tubes side by side: what hides two such tubes
 /// hides their ends alike, and no tube bends about its own side.
 bool is_hairpin(const PieceEnd& a, const PieceEnd& b, double radius) {
-  if (a.direction_variance + b.direction_variance > 1.0) return false;  // of fragments shorter than a radius
-  return a.outward.dot(b.outward) > 0.5 && (b.position - a.position).norm() < 3.0 * radius;
+  return have_directions(a, b) && a.outward.dot(b.outward) > 0.5 && (b.position - a.position).norm() < 3.0 * radius;
 }
 
 /// -log of the likelihood ratio of "the tube goes on from a to b" to "b is some other tube's end".
@@ -73,6 +75,35 @@ double shape_cost(const PieceEnd& a, const PieceEnd& b, double bending_rate, dou
   const double unseen = std::log(4.0 * radius);
   const double other = -std::log(end_density / (4.0 * std::numbers::pi));
   return join + unseen - other;
+}
+
+/// How far the pieces turn within each stretch of that length from the end of a cylinder on, radians, in ascending order.
+std::vector<double> turns_seen(const std::vector<TubePiece>& pieces, double stretch) {
+  std::vector<double> turns;
+  for (const TubePiece& piece : pieces)
+    for (std::size_t first = 0, last = 0; first + 2 < piece.nodes.size(); first = last) {
+      const Vec3 direction = piece.nodes[first + 1] - piece.nodes[first];
+      double length = 0.0, turn = 0.0;
+      for (last = first; last + 2 < piece.nodes.size() && length < stretch;) {
+        ++last;
+        const Vec3 next = piece.nodes[last + 1] - piece.nodes[last];
+        length += next.norm();
+        turn = std::max(turn, std::atan2(direction.cross(next).norm(), direction.dot(next)));
+      }
+      if (length >= stretch) turns.push_back(turn);
+    }
+  std::ranges::sort(turns);
+  return turns;
+}
+
+/// What it costs that the bridge turns more than twice as far within a stretch as the pieces do, nats: by the rule of succession
+/// one stretch in n + 2 does, where none of n is seen to. Student's tails reckon with one in seven.
+double sharpness_cost(const PieceEnd& a, const PieceEnd& b, const std::vector<double>& turns, double stretch) {
+  constexpr double kReckonedWith = 2.0;
+  const double turn = std::atan2(a.outward.cross(b.outward).norm(), -a.outward.dot(b.outward));
+  const double within = turn * std::min(1.0, stretch / (b.position - a.position).norm());
+  const auto as_far = static_cast<double>(turns.end() - std::ranges::lower_bound(turns, 0.5 * within));
+  return std::max(std::log((static_cast<double>(turns.size()) + 2.0) / (as_far + 1.0)) - kReckonedWith, 0.0);
 }
 
 /// A pair whose cost has what was looked into so far.
@@ -230,12 +261,15 @@ std::vector<PossibleJoin> find_possible_joins(const std::vector<TubePiece>& piec
   if (pieces.empty()) return pairs;
   const double radius = pieces.front().radius;
   const double density = static_cast<double>(ends.size()) / bounding_volume(ends, radius);
+  const double stretch = 4.0 * radius;
+  const std::vector<double> turns = turns_seen(pieces, stretch);
   std::vector<double> lengths;
   for (const TubePiece& piece : pieces) lengths.push_back(piece.length());
   for (std::uint32_t a = 0; a < ends.size(); ++a)
     for (std::uint32_t b = a + 1; b < ends.size(); ++b) {
       if (a / 2 == b / 2 || ends[a].is_on_side || ends[b].is_on_side || is_hairpin(ends[a], ends[b], radius)) continue;
       double cost = shape_cost(ends[a], ends[b], bending_rate, radius, density);
+      if (have_directions(ends[a], ends[b])) cost += sharpness_cost(ends[a], ends[b], turns, stretch);
       if (!(cost < cost_limit)) continue;
       cost += free_ends_cost(ends[a], ends[b], occlusion, radius);
       if (!(cost < cost_limit)) continue;
