@@ -1,11 +1,11 @@
 #include "modeling/end_discs.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
 
+#include "modeling/input/flat_blocks.hpp"
 #include "modeling/input/point_sample.hpp"
 #include "modeling/path_ends.hpp"
 
@@ -16,18 +16,11 @@ namespace {
 constexpr double kFarthest = 8.0, kAround = 2.0;
 constexpr std::size_t kFewPoints = 10;
 
-struct DiscPlane {
-  Vec3 middle, normal;  ///< normal: unit
-  double thickness;     ///< metres, standard deviation
-
-  explicit DiscPlane(std::span<const Vec3> points) : middle(middle_of(points)) {
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    for (const Vec3& point : points) covariance += (point - middle) * (point - middle).transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance / static_cast<double>(points.size()));
-    normal = solver.eigenvectors().col(0);
-    thickness = std::sqrt(std::max(solver.eigenvalues()[0], 0.0));
-  }
-};
+FittedPlane plane_of(std::span<const Vec3> points) {
+  PointMoments moments;
+  for (const Vec3& point : points) moments.add(point);
+  return FittedPlane(moments);
+}
 
 /// Those closer than `distance` metres to a place.
 std::vector<Vec3> within(const Vec3& place, double distance, std::span<const Vec3> points) {
@@ -37,12 +30,12 @@ std::vector<Vec3> within(const Vec3& place, double distance, std::span<const Vec
   return found;
 }
 
-/// Those on the plane, not farther than `distance` metres from its middle.
-std::vector<Vec3> on_plane(const DiscPlane& plane, double radius, double distance, std::span<const Vec3> points) {
+/// Those on the plane, not farther than `distance` metres from its center.
+std::vector<Vec3> on_plane(const FittedPlane& plane, double radius, double distance, std::span<const Vec3> points) {
   constexpr double kFlat = 0.1;  // radii
-  std::vector<Vec3> found = within(plane.middle, distance, points);
+  std::vector<Vec3> found = within(plane.center, distance, points);
   std::erase_if(found,
-                [&](const Vec3& point) { return std::abs((point - plane.middle).dot(plane.normal)) > kFlat * radius; });
+                [&](const Vec3& point) { return std::abs((point - plane.center).dot(plane.normal)) > kFlat * radius; });
   return found;
 }
 
@@ -54,8 +47,6 @@ struct ReachableDisc {
   EndDisc disc;
   double turn;  ///< radians, on the way
 };
-
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 /// How far a tube turns on its way from an end to the disc, radians. Near the disc the way's own direction says little.
 double turn_to(const EndDisc& disc, const PathEnd& end, double radius) {
@@ -81,6 +72,30 @@ void lead_to(const EndDisc& disc, TubePath& path, double radius) {
   path.bridged.insert(path.bridged.end(), {true, false});
 }
 
+/// Whether a tube may go on from the end to the disc, by `longest_way` metres at most.
+bool is_reachable(const EndDisc& disc, const PathEnd& end, double radius, double longest_way,
+                  const OcclusionTest& occlusion) {
+  constexpr double kMostTurn = 1.0;  // radians
+  const double way = (disc.center - end.tip).norm();
+  return way <= std::min(kFarthest * radius, longest_way) && turn_to(disc, end, radius) <= kMostTurn &&
+         !is_seen_through(end.tip, disc, radius, occlusion);
+}
+
+/// Leads paths to discs, those first that turn least: each disc is one path's, and each end of a path reaches one. True if any does.
+bool reach_by_least_turn(std::vector<ReachableDisc> reachable) {
+  std::ranges::stable_sort(reachable, {}, &ReachableDisc::turn);
+  std::vector<Vec3> reached;
+  std::set<std::pair<const TubePath*, bool>> ends;
+  for (const auto& [path, is_last, radius, disc, turn] : reachable) {
+    if (!within(disc.center, radius, reached).empty() || !ends.emplace(path, is_last).second) continue;
+    reached.push_back(disc.center);
+    if (!is_last) turn_about(*path);
+    lead_to(disc, *path, radius);
+    if (!is_last) turn_about(*path);
+  }
+  return !reached.empty();
+}
+
 }  // namespace
 
 std::vector<EndDisc> find_end_discs(std::span<const Vec3> points, double radius, double spacing,
@@ -94,57 +109,47 @@ std::vector<EndDisc> find_end_discs(std::span<const Vec3> points, double radius,
       continue;
     std::vector<Vec3> disc = within(points[i], 0.5 * radius, points);
     if (disc.size() < kFewPoints) continue;
-    DiscPlane plane(disc);
-    if (plane.thickness > kThick * radius) continue;
+    FittedPlane plane = plane_of(disc);
+    if (std::sqrt(plane.mean_square) > kThick * radius) continue;
     for (int round = 0; round < 4 && disc.size() >= kFewPoints; ++round) {
       disc = on_plane(plane, radius, kWide * radius, points);
-      if (!disc.empty()) plane = DiscPlane(disc);
+      if (!disc.empty()) plane = plane_of(disc);
     }
-    const double facing = plane.normal.dot((viewpoint - plane.middle).normalized());
+    const double facing = plane.normal.dot((viewpoint - plane.center).normalized());
     const double full = points_of_flat_end(radius, spacing) * std::abs(facing);
     const auto count = static_cast<double>(disc.size());
     const auto around = static_cast<double>(on_plane(plane, radius, kAround * radius, points).size());
-    if (disc.size() < kFewPoints || count < kLeastPart * full || around > (1.0 + kGoesOn) * count) continue;
-    discs.push_back({.center = plane.middle, .outward = std::copysign(1.0, facing) * plane.normal});
+    if (disc.size() < kFewPoints || facing == 0.0 || count < kLeastPart * full || around > (1.0 + kGoesOn) * count)
+      continue;
+    discs.push_back({.center = plane.center, .outward = std::copysign(1.0, facing) * plane.normal});
   }
   return discs;
 }
 
 bool reach_end_discs(std::vector<TubeModel>& tubes, const FilteredCloud& cloud, const std::vector<cloud::Label>& labels,
                      const ViewProjection& projection, const OcclusionTest& scan, const std::vector<double>& lengths) {
-  constexpr double kMostTurn = 1.0;
   const auto reach = [](const TubeModel& tube) { return (kFarthest + kAround) * tube.radius; };
   const Segment unlabeled = about_ends(tubes, cloud.points, points_without_label(labels), reach);
   std::vector<ReachableDisc> reachable;
   for (TubeModel& tube : tubes) {
     const OcclusionTest occlusion = scan.with_radius(tube.radius);
+    const double longest_way = lengths.empty() ? kFarthest * tube.radius : lengths.back() + tube.radius - tube.length();
     for (TubePath& path : tube.paths)
-      for (const bool is_last : {false, true}) {
-        if (path.nodes.size() < 2) continue;
+      for (int end = 0; end < 2 && path.nodes.size() > 1; ++end) {
         turn_about(path);
-        const PathEnd end = last_end(path.nodes, tube.radius);
-        const Segment beyond = near(end.tip, reach(tube), cloud.points, unlabeled);
+        const PathEnd last = last_end(path.nodes, tube.radius);
+        const Segment beyond = near(last.tip, reach(tube), cloud.points, unlabeled);
         for (const EndDisc& disc : find_end_discs(positions_at(cloud.points, beyond), tube.radius, cloud.spacing,
-                                                  viewpoint_of(cloud, beyond, projection))) {
-          const double way = (disc.center - end.tip).norm(), turn = turn_to(disc, end, tube.radius);
-          if (way > kFarthest * tube.radius || turn > kMostTurn) continue;
-          if (!lengths.empty() && tube.length() + way > lengths.back() + tube.radius) continue;
-          if (is_seen_through(end.tip, disc, tube.radius, occlusion)) continue;
-          reachable.push_back({.path = &path, .is_last = is_last, .radius = tube.radius, .disc = disc, .turn = turn});
-        }
+                                                  viewpoint_of(cloud, beyond, projection)))
+          if (is_reachable(disc, last, tube.radius, longest_way, occlusion))
+            reachable.push_back({.path = &path,
+                                 .is_last = end == 1,
+                                 .radius = tube.radius,
+                                 .disc = disc,
+                                 .turn = turn_to(disc, last, tube.radius)});
       }
   }
-  std::ranges::stable_sort(reachable, {}, &ReachableDisc::turn);
-  std::vector<Vec3> reached;
-  std::set<std::pair<const TubePath*, bool>> ends;
-  for (const auto& [path, is_last, radius, disc, turn] : reachable) {
-    if (!within(disc.center, radius, reached).empty() || !ends.emplace(path, is_last).second) continue;
-    reached.push_back(disc.center);
-    if (!is_last) turn_about(*path);
-    lead_to(disc, *path, radius);
-    if (!is_last) turn_about(*path);
-  }
-  return !reached.empty();
+  return reach_by_least_turn(std::move(reachable));
 }
 
 }  // namespace tubebin::modeling

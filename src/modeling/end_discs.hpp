@@ -21,7 +21,7 @@ struct EndDisc {
 std::vector<EndDisc> find_end_discs(std::span<const Vec3> points, double radius, double spacing, const Vec3& viewpoint);
 
 /// Lengthens paths to discs without a label: of a tube that turns toward the scanner, the side is seen so flatly that nothing
-/// follows it, and its end looks like a disc some radii farther on. The tube has to turn less than a right angle on its way there,
+/// follows it, and its end looks like a disc some radii farther on. The tube has to turn by less than a radian on its way there,
 /// the scan must not see through where it would be, and no tube gets longer than `lengths` (metres, ascending; empty: any).
 /// `labels`: of the cloud's points, 0 or 1 + the tube's place. True if any path changed.
 bool reach_end_discs(std::vector<TubeModel>& tubes, const FilteredCloud& cloud, const std::vector<cloud::Label>& labels,

@@ -11,10 +11,6 @@ namespace {
 /// The growth has a pole at 90 degrees, and nobody has measured it beyond.
 const double kSteepestIncidence = radians(85.0);
 
-double angle_between(const Vec3& unit_a, const Vec3& unit_b) {
-  return std::atan2(unit_a.cross(unit_b).norm(), unit_a.dot(unit_b));
-}
-
 double square(double x) { return x * x; }
 
 }  // namespace

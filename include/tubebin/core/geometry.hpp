@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <numbers>
 
 namespace tubebin {
@@ -13,6 +14,9 @@ using Pose = Eigen::Isometry3d;
 
 constexpr double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 constexpr double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
+
+/// From 0 to pi, exact near both.
+inline double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 inline Pose make_pose(const Quat& rotation, const Vec3& translation) {
   Pose pose = Pose::Identity();

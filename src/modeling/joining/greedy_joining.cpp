@@ -30,8 +30,6 @@ std::vector<End> find_ends(const std::vector<TubePiece>& pieces) {
   return ends;
 }
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-
 std::vector<EndPair> pairs_by_cost(const std::vector<TubePiece>& pieces, const GreedyJoiningOptions& options) {
   const std::vector<End> ends = find_ends(pieces);
   std::vector<EndPair> pairs;

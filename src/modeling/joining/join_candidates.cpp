@@ -88,7 +88,7 @@ std::vector<double> turns_seen(const std::vector<TubePiece>& pieces, double stre
         ++last;
         const Vec3 next = piece.nodes[last + 1] - piece.nodes[last];
         length += next.norm();
-        turn = std::max(turn, std::atan2(direction.cross(next).norm(), direction.dot(next)));
+        turn = std::max(turn, angle_between(direction, next));
       }
       if (length >= stretch) turns.push_back(turn);
     }
@@ -100,7 +100,7 @@ std::vector<double> turns_seen(const std::vector<TubePiece>& pieces, double stre
 /// one stretch in n + 2 does, where none of n is seen to. Student's tails reckon with one in seven.
 double sharpness_cost(const PieceEnd& a, const PieceEnd& b, const std::vector<double>& turns, double stretch) {
   constexpr double kReckonedWith = 2.0;
-  const double turn = std::atan2(a.outward.cross(b.outward).norm(), -a.outward.dot(b.outward));
+  const double turn = angle_between(a.outward, -b.outward);
   const double within = turn * std::min(1.0, stretch / (b.position - a.position).norm());
   const auto as_far = static_cast<double>(turns.end() - std::ranges::lower_bound(turns, 0.5 * within));
   return std::max(std::log((static_cast<double>(turns.size()) + 2.0) / (as_far + 1.0)) - kReckonedWith, 0.0);

@@ -82,8 +82,7 @@ double least_bend_radius(const Tube& tube) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 2; i < tube.nodes.size(); ++i) {
     const Vec3 before = tube.nodes[i - 1] - tube.nodes[i - 2], after = tube.nodes[i] - tube.nodes[i - 1];
-    least = std::min(least,
-                     0.5 * (before.norm() + after.norm()) / std::atan2(before.cross(after).norm(), before.dot(after)));
+    least = std::min(least, 0.5 * (before.norm() + after.norm()) / angle_between(before, after));
   }
   return least;
 }
