@@ -1,8 +1,8 @@
 /// Contacts between tubes, and between tubes and the bin, of the very surfaces that the scanner sees.
 ///
 /// A tube is the union of convex solids, one for each of its cylinders: the points within the radius of the axis, cut flat
-/// at free ends. That is exactly cylinders plus joint spheres. Only where two flat ends meet each other, or a
-/// flat end's face a bin edge, their rims are rounded by kRimRounding.
+/// at free ends. That is exactly cylinders plus joint spheres; a lone sphere is a cylinder of no length. Only where two flat
+/// ends meet each other, or a flat end's face a bin edge, their rims are rounded by kRimRounding.
 #pragma once
 
 #include <array>
@@ -45,7 +45,7 @@ struct CollisionTube {
 
   std::vector<Vec3> nodes;
   std::vector<CollisionCylinder> cylinders;
-  std::vector<Ball> joints;  ///< at nodes shared by two cylinders or more, and lone spheres
+  std::vector<Ball> joints;  ///< at nodes shared by two cylinders or more, and lone spheres, which are cylinders, too
   double radius = 0.0;       ///< of the thickest part
   scene::Box bounds;
 

@@ -13,7 +13,7 @@ void CollisionCylinder::place(const Segment& to) {
   axis = to;
   direction = axis.b - axis.a;
   length = direction.norm();
-  direction /= length;
+  direction = length > 0.0 ? Vec3(direction / length) : Vec3::UnitZ();
   const Vec3 margin = Vec3::Constant(radius);
   bounds = scene::Box(axis.a.cwiseMin(axis.b) - margin, axis.a.cwiseMax(axis.b) + margin);
 }
@@ -21,7 +21,13 @@ void CollisionCylinder::place(const Segment& to) {
 CollisionTube::CollisionTube(const scene::PlacedTube& tube) : solids_(tube::tube_solids(tube.tube, tube.tube.nodes)) {
   nodes.resize(tube.tube.nodes.size());
   radius = tube.tube.radius_max();
-  for (const tube::JointSphere& joint : solids_.joints) joints.push_back({joint.center, joint.radius});
+  const std::vector<int> degrees = tube.tube.node_degrees();
+  for (const tube::JointSphere& joint : solids_.joints) {
+    joints.push_back({joint.center, joint.radius});
+    if (degrees[static_cast<std::size_t>(joint.node)] == 0)
+      solids_.cylinders.push_back(
+          {.node_a = joint.node, .node_b = joint.node, .a = joint.center, .b = joint.center, .radius = joint.radius});
+  }
   for (const tube::SolidCylinder& cylinder : solids_.cylinders) {
     CollisionCylinder& posed = cylinders.emplace_back();
     posed.radius = cylinder.radius;

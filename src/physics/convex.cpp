@@ -14,14 +14,15 @@ SegmentPair closest_on_segments(const Segment& first, const Segment& second) {
   const double c = d1.dot(r);
   const double b = d1.dot(d2);
   const double denominator = a * e - b * b;
+  // A point, as a ball's axis, is near at any of its parameters.
+  const auto parameter = [](double along, double squared_length) {
+    return squared_length > 0.0 ? std::clamp(along / squared_length, 0.0, 1.0) : 0.0;
+  };
   SegmentPair pair;
   // Parallel segments: any s will do; the caller adds the ends of the overlap.
   pair.s = denominator > 1e-12 * a * e ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.5;
-  pair.t = (b * pair.s + f) / e;
-  if (pair.t < 0.0 || pair.t > 1.0) {
-    pair.t = std::clamp(pair.t, 0.0, 1.0);
-    pair.s = std::clamp((b * pair.t - c) / a, 0.0, 1.0);
-  }
+  pair.t = parameter(b * pair.s + f, e);
+  if (pair.t == 0.0 || pair.t == 1.0) pair.s = parameter(b * pair.t - c, a);
   return pair;
 }
 

@@ -63,6 +63,58 @@ TEST(ShapeScenes, AMixedBinHasAllKinds) {
   }
 }
 
+struct InscribedBall {
+  Vec3 center;
+  double radius = 0.0;
+};
+
+/// Balls that lie within the object, a millimetre apart along its cylinders.
+std::vector<InscribedBall> inscribed_balls(const scene::PlacedTube& placed) {
+  const tube::Tube& tube = placed.tube;
+  const std::vector<int> degrees = tube.node_degrees();
+  std::vector<InscribedBall> balls;
+  for (const tube::Cylinder& cylinder : tube.cylinders) {
+    const Vec3 a = placed.node_in_world(cylinder.node_a), b = placed.node_in_world(cylinder.node_b);
+    const auto is_free = [&](int node) { return degrees[static_cast<std::size_t>(node)] == 1; };
+    const double length = (b - a).norm();
+    for (double along = 0.0; along <= length; along += 0.001) {
+      double radius = tube.radius_of(cylinder);
+      if (is_free(cylinder.node_a)) radius = std::min(radius, along);
+      if (is_free(cylinder.node_b)) radius = std::min(radius, length - along);
+      balls.push_back({a + along / length * (b - a), radius});
+    }
+  }
+  if (tube.cylinders.empty()) balls.push_back({placed.node_in_world(0), tube.radius});
+  return balls;
+}
+
+double deepest_overlap(const std::vector<InscribedBall>& first, const std::vector<InscribedBall>& second) {
+  double deepest = 0.0;
+  for (const InscribedBall& p : first)
+    for (const InscribedBall& q : second)
+      deepest = std::max(deepest, p.radius + q.radius - (p.center - q.center).norm());
+  return deepest;
+}
+
+TEST(ShapeScenes, NoObjectOfAMixedBinLiesInAnother) {
+  const TemporaryFolder folder;
+  const std::string data = folder / "data";
+  const ProgramResult made = run_generate_dataset({source_file("config/mixed.yaml"), "--output", data, "--tubes",
+                                                   "5,10", "--cases", "4", "--jobs", "1"});
+  ASSERT_EQ(made.exit_code, 0) << made.error;
+  for (const int tubes : {5, 10})
+    for (int scene = 1; scene <= 4; ++scene) {
+      const std::string file = fmt::format("{}/mixed{}/{:03}/scene.json", data, tubes, scene);
+      std::vector<std::vector<InscribedBall>> objects;
+      for (const scene::PlacedTube& placed : scene::read_scene_json(file).scene.tubes)
+        objects.push_back(inscribed_balls(placed));
+      for (std::size_t i = 0; i < objects.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+          EXPECT_LT(deepest_overlap(objects[i], objects[j]), physics::PhysicsOptions{}.penetration_max)
+              << file << ", objects " << j + 1 << " and " << i + 1;
+    }
+}
+
 TEST(ShapeScenes, EachShapeAloneIsMadeAndVerified) {
   for (const char* shape : {"ring", "sphere", "curve"}) {
     const TemporaryFolder folder;

@@ -98,6 +98,26 @@ TEST(Collision, ParallelCylindersTouchAtBothEndsOfTheirOverlap) {
   EXPECT_NEAR(high, 0.2, 1e-9);
 }
 
+TEST(Collision, ABallTouchesSidesEndsAndBalls) {
+  const auto ball = [](const Vec3& center) {
+    return scene::PlacedTube{tube::Tube{.radius = 0.02, .mass = 0.1, .nodes = {center}, .cylinders = {}},
+                             Pose::Identity()};
+  };
+  const scene::PlacedTube along_x = straight({0, 0, 0}, {0.2, 0, 0});
+  const auto expect_touch = [](const std::vector<Touch>& touches, const Vec3& normal) {
+    ASSERT_EQ(touches.size(), 1u);
+    EXPECT_NEAR(touches[0].depth, 0.0001, 1e-9);
+    EXPECT_NEAR((touches[0].normal - normal).norm(), 0.0, 1e-6);
+  };
+  expect_touch(touches_of(along_x, ball({0.07, 0, 0.0324})), Vec3::UnitZ());
+  expect_touch(touches_of(ball({0.07, 0, 0.0324}), along_x), -Vec3::UnitZ());
+  expect_touch(touches_of(along_x, ball({0.2199, 0.005, 0})), Vec3::UnitX());
+  expect_touch(touches_of(ball({0, 0, 0}), ball({0, 0.0399, 0})), Vec3::UnitY());
+  EXPECT_TRUE(touches_of(along_x, ball({0.07, 0, 0.0326})).empty());
+  EXPECT_TRUE(touches_of(along_x, ball({0.2201, 0, 0})).empty());
+  EXPECT_TRUE(touches_of(ball({0, 0, 0}), ball({0, 0.0401, 0})).empty());
+}
+
 TEST(Collision, AFlatEndEndsWhereTheScannerSeesIt) {
   // A capsule would reach a radius beyond the end.
   EXPECT_TRUE(touches_of(straight({0, 0, 0}, {0.2, 0, 0}), straight({0.2126, -0.1, 0}, {0.2126, 0.1, 0}), 0.0).empty());
