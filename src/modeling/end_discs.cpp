@@ -41,9 +41,9 @@ std::vector<Vec3> on_plane(const FittedPlane& plane, double radius, double dista
 
 /// A path's end from which a disc can be reached.
 struct ReachableDisc {
+  TubeModel* tube;
   TubePath* path;
   bool is_last;  ///< of the path's two ends
-  double radius;
   EndDisc disc;
   double turn;  ///< radians, on the way
 };
@@ -66,10 +66,13 @@ bool is_seen_through(const Vec3& tip, const EndDisc& disc, double radius, const 
 }
 
 /// The path's last end leads to the disc, by a cylinder that nothing shows and one behind the disc.
-void lead_to(const EndDisc& disc, TubePath& path, double radius) {
-  const double depth = std::min(radius, 0.5 * (disc.center - path.nodes.back()).norm());
+void lead_to(const EndDisc& disc, TubeModel& tube, TubePath& path) {
+  constexpr double kOdds = 2.3;  // nats: of 33 discs in 293 simulated clouds 30 were the tubes' that lead to them
+  const double depth = std::min(tube.radius, 0.5 * (disc.center - path.nodes.back()).norm());
   path.nodes.insert(path.nodes.end(), {disc.center - depth * disc.outward, disc.center});
   path.bridged.insert(path.bridged.end(), {true, false});
+  path.bridge_odds.push_back(kOdds);
+  if (tube.whole_odds) tube.whole_odds = std::min(*tube.whole_odds, kOdds);
 }
 
 /// Whether a tube may go on from the end to the disc, by `longest_way` metres at most.
@@ -86,11 +89,11 @@ bool reach_by_least_turn(std::vector<ReachableDisc> reachable) {
   std::ranges::stable_sort(reachable, {}, &ReachableDisc::turn);
   std::vector<Vec3> reached;
   std::set<std::pair<const TubePath*, bool>> ends;
-  for (const auto& [path, is_last, radius, disc, turn] : reachable) {
-    if (!within(disc.center, radius, reached).empty() || !ends.emplace(path, is_last).second) continue;
+  for (const auto& [tube, path, is_last, disc, turn] : reachable) {
+    if (!within(disc.center, tube->radius, reached).empty() || !ends.emplace(path, is_last).second) continue;
     reached.push_back(disc.center);
     if (!is_last) turn_about(*path);
-    lead_to(disc, *path, radius);
+    lead_to(disc, *tube, *path);
     if (!is_last) turn_about(*path);
   }
   return !reached.empty();
@@ -142,9 +145,9 @@ bool reach_end_discs(std::vector<TubeModel>& tubes, const FilteredCloud& cloud, 
         for (const EndDisc& disc : find_end_discs(positions_at(cloud.points, beyond), tube.radius, cloud.spacing,
                                                   viewpoint_of(cloud, beyond, projection)))
           if (is_reachable(disc, last, tube.radius, longest_way, occlusion))
-            reachable.push_back({.path = &path,
+            reachable.push_back({.tube = &tube,
+                                 .path = &path,
                                  .is_last = end == 1,
-                                 .radius = tube.radius,
                                  .disc = disc,
                                  .turn = turn_to(disc, last, tube.radius)});
       }

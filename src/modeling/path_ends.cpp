@@ -1,7 +1,5 @@
 #include "modeling/path_ends.hpp"
 
-#include <algorithm>
-
 #include "modeling/input/point_sample.hpp"
 #include "modeling/labeling.hpp"
 
@@ -12,11 +10,6 @@ PathEnd last_end(const std::vector<Vec3>& nodes, double radius) {
   std::size_t k = nodes.size() - 2;
   while (k > 0 && (nodes[k] - tip).norm() < radius) --k;
   return {tip, (tip - nodes[k]).normalized()};
-}
-
-void turn_about(TubePath& path) {
-  std::ranges::reverse(path.nodes);
-  std::reverse(path.bridged.begin(), path.bridged.end());
 }
 
 Segment points_without_label(std::span<const cloud::Label> labels) {

@@ -18,9 +18,6 @@ struct PathEnd {
 /// Of the end that the nodes, two or more, lead to.
 PathEnd last_end(const std::vector<Vec3>& nodes, double radius);
 
-/// Turns the path about: its first end becomes its last.
-void turn_about(TubePath& path);
-
 /// Indices of the points that belong to no tube.
 Segment points_without_label(std::span<const cloud::Label> labels);
 

@@ -15,6 +15,12 @@ void round_tubes(std::vector<TubeModel>& tubes) {
   }
 }
 
+void turn_about(TubePath& path) {
+  std::reverse(path.nodes.begin(), path.nodes.end());
+  std::reverse(path.bridged.begin(), path.bridged.end());
+  std::reverse(path.bridge_odds.begin(), path.bridge_odds.end());
+}
+
 double polyline_length(const std::vector<Vec3>& nodes) {
   double sum = 0.0;
   for (std::size_t i = 1; i < nodes.size(); ++i) sum += (nodes[i] - nodes[i - 1]).norm();

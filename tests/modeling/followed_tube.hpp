@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -33,19 +34,42 @@ struct Followed {
     labels.push_back(has_label ? 1 : 0);
   }
 
-  /// Where the tube ends after the step.
+  /// Where the tube ends after the step, whichever of its ends comes first.
   Vec3 end(const Step& step) const {
-    const std::vector<Vec3> nodes = {start, kBend};
-    std::vector<TubeModel> tubes = {{.paths = {{.nodes = nodes, .bridged = {false}}}, .radius = kRadius}};
+    TubePath path = followed();
+    const TubePath after = path_after(step, path);
+    turn_about(path);
+    TubePath turned = path_after(step, path);
+    turn_about(turned);
+    EXPECT_EQ(turned.nodes, after.nodes);
+    EXPECT_EQ(turned.bridged, after.bridged);
+    EXPECT_EQ(turned.bridge_odds, after.bridge_odds);
+    EXPECT_EQ(after.nodes.size(), after.bridged.size() + 1);
+    EXPECT_EQ(std::ranges::count(after.bridged, true), std::ssize(after.bridge_odds));
+    EXPECT_EQ(after.bridge_odds.front(), kOdds);
+    EXPECT_EQ(after.nodes.front(), start);
+    return after.nodes.back();
+  }
+
+ private:
+  static constexpr double kOdds = 5.0;
+
+  /// With a bridge in its middle.
+  TubePath followed() const {
+    const Vec3 third = (kBend - start) / 3.0;
+    return {.nodes = {start, start + third, kBend - third, kBend},
+            .bridged = {false, true, false},
+            .bridge_odds = {kOdds}};
+  }
+
+  TubePath path_after(const Step& step, const TubePath& path) const {
+    std::vector<TubeModel> tubes = {{.paths = {path}, .radius = kRadius}};
     const FilteredCloud cloud{.source = {}, .points = points, .normals = {}, .spacing = spacing};
     const ModelingInput input = input_of(seen, bin);
     const ViewProjection projection = view_of(input);
     const bool any = step(tubes, cloud, labels, projection, OcclusionTest(input, projection, spacing, 0.0));
-    const TubePath& path = tubes[0].paths[0];
-    EXPECT_EQ(any, path.nodes != nodes);
-    EXPECT_EQ(path.nodes.size(), path.bridged.size() + 1);
-    EXPECT_EQ(path.nodes.front(), start);
-    return path.nodes.back();
+    EXPECT_EQ(any, tubes[0].paths[0].nodes != path.nodes);
+    return tubes[0].paths[0];
   }
 };
 

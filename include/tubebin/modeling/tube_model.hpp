@@ -36,6 +36,9 @@ struct TubePath {
   double evidence = 0.0;  ///< nats: log of how much likelier its points are of a tube than of flat strips
 };
 
+/// Turns the path about: its first end becomes its last.
+void turn_about(TubePath& path);
+
 /// A tube: one path, or, where it branches, a tree of them. A branch starts on the centreline of a path before it, or
 /// ends there.
 struct TubeModel {

@@ -34,9 +34,7 @@ void cut_ends_beyond_others(std::vector<TubePath>& paths, double radius) {
     for (int end = 0; end < 2; ++end) {
       for (std::size_t other = 0; other < paths.size(); ++other)
         if (other != k) cut_end_beyond(paths[other].nodes, radius, paths[k]);
-      std::reverse(paths[k].nodes.begin(), paths[k].nodes.end());
-      std::reverse(paths[k].bridged.begin(), paths[k].bridged.end());
-      std::reverse(paths[k].bridge_odds.begin(), paths[k].bridge_odds.end());
+      turn_about(paths[k]);
     }
 }
 
