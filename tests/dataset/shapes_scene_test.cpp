@@ -99,8 +99,8 @@ double deepest_overlap(const std::vector<InscribedBall>& first, const std::vecto
 TEST(ShapeScenes, NoObjectOfAMixedBinLiesInAnother) {
   const TemporaryFolder folder;
   const std::string data = folder / "data";
-  const ProgramResult made = run_generate_dataset({source_file("config/mixed.yaml"), "--output", data, "--tubes",
-                                                   "5,10", "--cases", "4", "--jobs", "1"});
+  const ProgramResult made = run_generate_dataset(
+      {source_file("config/mixed.yaml"), "--output", data, "--tubes", "5,10", "--cases", "4", "--jobs", "1"});
   ASSERT_EQ(made.exit_code, 0) << made.error;
   for (const int tubes : {5, 10})
     for (int scene = 1; scene <= 4; ++scene) {

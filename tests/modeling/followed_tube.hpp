@@ -57,9 +57,8 @@ struct Followed {
   /// With a bridge in its middle.
   TubePath followed() const {
     const Vec3 third = (kBend - start) / 3.0;
-    return {.nodes = {start, start + third, kBend - third, kBend},
-            .bridged = {false, true, false},
-            .bridge_odds = {kOdds}};
+    return {
+        .nodes = {start, start + third, kBend - third, kBend}, .bridged = {false, true, false}, .bridge_odds = {kOdds}};
   }
 
   TubePath path_after(const Step& step, const TubePath& path) const {

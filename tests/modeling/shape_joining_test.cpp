@@ -104,6 +104,31 @@ class ShapeJoiningUnderLid : public LidScene {
   }
 };
 
+/// Part of a ring in the plane of z = 0.
+std::vector<Vec3> ring(double radius, double from_deg, double to_deg) {
+  std::vector<Vec3> nodes;
+  for (double angle = from_deg; angle <= to_deg; angle += 5.0)
+    nodes.push_back(radius * Vec3(std::cos(radians(angle)), std::sin(radians(angle)), 0.0));
+  return nodes;
+}
+
+TEST(ShapeJoining, TwoCopiesOfARingDoNotLieInOnePlace) {
+  std::vector<cloud::Point> points;
+  add_sheet({0, 0, 0.1}, 0.5, points);
+  const Pose world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 2});
+  const ModelingInput input{.points = points, .world_from_sensor = world_from_sensor, .bin = std::nullopt};
+  const OcclusionTest all_hidden(input, {world_from_sensor, cloud::Point::Zero()}, kSheetSpacing, kRadius);
+  const Centerlines shapes = {smooth_samples(ring(7.0 * kRadius, 0, 310), kRadius / 2.0, kRadius)};
+  // Of a larger ring, of which more is seen than the shape has.
+  const auto joined = [&](const Vec3& to) {
+    return join_by_shapes(
+        {piece_along(ring(7.2 * kRadius, 0, 180)), piece_along(moved(ring(7.2 * kRadius, 185, 345), turned(0.0, to)))},
+        shapes, all_hidden);
+  };
+  EXPECT_EQ(joined({0.4, 0, 0}).paths.size(), 2u);
+  EXPECT_LE(joined({0, 0, 0}).paths.size(), 1u);
+}
+
 TEST_F(ShapeJoiningUnderLid, JoinsWhatOneCopyExplains) {
   const ShapeJoining joining = join_by_shapes(back_to_back(), kShapes, occlusion());
   EXPECT_TRUE(joining.rest.empty());

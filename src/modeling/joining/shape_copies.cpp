@@ -244,7 +244,7 @@ class CopyFinder {
     return cost;
   }
 
-  /// Those of other tubes that come near the copy: a section all along it is a bit of its surface.
+  /// Those of other tubes that come near the copy.
   std::vector<const Section*> sections_beside(const ShapeCopy& copy) const {
     const Pose inverse = copy.pose.inverse();
     std::vector<const Section*> others;
@@ -253,8 +253,7 @@ class CopyFinder {
       const Vec3 middle = inverse * section.samples[section.samples.size() / 2];
       const bool is_near = box_.exteriorDistance(middle) < section.length + 2.0 * radius_;
       const auto is_k = [&](const PlacedSection& each) { return each.section == k; };
-      if (section.length >= 4.0 * radius_ && is_near && std::ranges::none_of(copy.placed, is_k) &&
-          !lies_on_copy(section, copy, radius_))
+      if (section.length >= 4.0 * radius_ && is_near && std::ranges::none_of(copy.placed, is_k))
         others.push_back(&section);
     }
     return others;
@@ -264,7 +263,7 @@ class CopyFinder {
   bool is_taken(const Vec3& place, const std::vector<const Section*>& others) const {
     return std::ranges::any_of(others, [&](const Section* other) {
       return std::ranges::any_of(other->samples, [&](const Vec3& sample) {
-        return (sample - place).squaredNorm() < 1.44 * radius_ * radius_;
+        return (sample - place).squaredNorm() < 2.25 * radius_ * radius_;
       });
     });
   }
