@@ -6,6 +6,7 @@
 #include "support/commands.hpp"
 #include "support/program.hpp"
 #include "tubebin/dataset/dataset_config.hpp"
+#include "tubebin/physics/drop_simulator.hpp"
 #include "tubebin/scene/scene_json.hpp"
 #include "tubebin/scene/tubes_txt.hpp"
 

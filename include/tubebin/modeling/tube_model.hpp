@@ -29,7 +29,8 @@ struct TubePath {
       nodes;  ///< cylinder i reaches from nodes[i] to nodes[i + 1]; metres, world frame; a ball's centre alone
   std::vector<bool> bridged;  ///< of cylinder i: it spans a stretch without points, from one piece to the next
   /// nats, of the bridges in order: log of how much likelier the best explanation of the scan is than the best one in
-  /// which the pieces on both sides are different tubes'; 10 at most. None where this was not looked at.
+  /// which the pieces on both sides are different tubes'; 10 at most. Of a bridge to the disc of an end, how often such are
+  /// right. None where this was not looked at.
   std::vector<double> bridge_odds = {};
   /// nats: the same against the best one in which its pieces are not one tube by themselves.
   std::optional<double> whole_odds = {};
