@@ -19,6 +19,13 @@ inline void add_sheet(const Vec3& center, double half_size, std::vector<cloud::P
       points.push_back((center + Vec3(x, y, 0)).cast<float>());
 }
 
+/// What a scanner 2 m above that saw these points says.
+inline OcclusionTest seen_from_above(const std::vector<cloud::Point>& points) {
+  const Pose world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 2});
+  const ModelingInput input{.points = points, .world_from_sensor = world_from_sensor, .bin = std::nullopt};
+  return {input, {world_from_sensor, cloud::Point::Zero()}, kSheetSpacing, kRadius};
+}
+
 /// What a scanner 2 m above sees of a floor far below, and of a lid over the middle of the x axis.
 class LidScene : public ::testing::Test {
  protected:
@@ -27,11 +34,7 @@ class LidScene : public ::testing::Test {
     add_sheet({0, 0, 0.1}, 0.03, points_);
   }
 
-  OcclusionTest occlusion() const {
-    const Pose world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 2});
-    const ModelingInput input{.points = points_, .world_from_sensor = world_from_sensor, .bin = std::nullopt};
-    return {input, {world_from_sensor, cloud::Point::Zero()}, kSheetSpacing, kRadius};
-  }
+  OcclusionTest occlusion() const { return seen_from_above(points_); }
 
   static TubePiece straight(double y, double x_from, double x_to) {
     return {.nodes = {{x_from, y, 0}, {(x_from + x_to) / 2, y, 0}, {x_to, y, 0}}, .radius = kRadius, .points = {}};

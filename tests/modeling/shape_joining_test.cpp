@@ -115,9 +115,7 @@ std::vector<Vec3> ring(double radius, double from_deg, double to_deg) {
 TEST(ShapeJoining, TwoCopiesOfARingDoNotLieInOnePlace) {
   std::vector<cloud::Point> points;
   add_sheet({0, 0, 0.1}, 0.5, points);
-  const Pose world_from_sensor = make_pose(Quat(0, 1, 0, 0), {0, 0, 2});
-  const ModelingInput input{.points = points, .world_from_sensor = world_from_sensor, .bin = std::nullopt};
-  const OcclusionTest all_hidden(input, {world_from_sensor, cloud::Point::Zero()}, kSheetSpacing, kRadius);
+  const OcclusionTest all_hidden = seen_from_above(points);
   const Centerlines shapes = {smooth_samples(ring(7.0 * kRadius, 0, 310), kRadius / 2.0, kRadius)};
   // Of a larger ring, of which more is seen than the shape has.
   const auto joined = [&](const Vec3& to) {
