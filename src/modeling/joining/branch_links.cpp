@@ -58,7 +58,7 @@ double side_seen_through(const Vec3& tip, const Vec3& place, const TubePiece& ot
 /// What the scene's paths are like.
 struct Surroundings {
   double radius, bending_rate;
-  double line_density;  ///< length of centreline a volume, 1 / m^2
+  double chance_cost;  ///< nats, of "a path passes there by chance", in side_cost
 };
 
 Surroundings surroundings_of(const std::vector<TubePiece>& paths) {
@@ -69,30 +69,28 @@ Surroundings surroundings_of(const std::vector<TubePiece>& paths) {
     for (const Vec3& node : path.nodes) box.extend(node);
   }
   const double radius = paths.front().radius;
+  // Lines of density L a volume pass a ray within w on either side pi / 2 L w times a metre.
+  const double line_density = length / (box.sizes().array() + 2.0 * radius).prod();
   return {.radius = radius,
           .bending_rate = estimate_bending_rate(paths, radius),
-          .line_density = length / (box.sizes().array() + 2.0 * radius).prod()};
+          .chance_cost = -std::log(4.0 * radius * std::numbers::pi / 2.0 * line_density)};
 }
 
 /// -log of the likelihood ratio of "the end leads to the other path's place" to "that path passes there by chance", where
 /// as many ends out of sight lead to another path of their tube as do not.
 /// As in join_candidates.cpp, a direction that walks at random with variance q a metre is off by q D^3 / 3 an axis after
 /// a length D. Of the two axes only the one across both counts, since the branch may start anywhere along the other
-/// path. Tails are Student's t with 3 degrees of freedom (in 1 dimension, log norm log(2 / (pi sqrt(3)))). Lines of
-/// density L a volume pass a ray within w on either side pi / 2 L w times a metre.
+/// path. Tails are Student's t with 3 degrees of freedom (in 1 dimension, log norm log(2 / (pi sqrt(3)))).
 double side_cost(const PieceEnd& end, const Vec3& place, const Surroundings& around) {
   const Vec3 chord = place - end.position;
   const double length = std::max(chord.norm(), around.radius);
   const double ahead = chord.dot(end.outward);
   const double off = ahead > 0.0 ? (chord - ahead * end.outward).norm() : chord.norm();
   const double fit = around.radius / 4.0;
-  const double variance =
-      around.bending_rate * std::pow(length, 3) / 3.0 + end.direction_variance * length * length + fit * fit;
-  const double log_norm = std::log(2.0 / (std::numbers::pi * std::sqrt(3.0)));
-  const double branch = 2.0 * std::log1p(off * off / (3.0 * variance)) - log_norm + 0.5 * std::log(variance);
-  const double unseen = std::log(4.0 * around.radius) + length / (4.0 * around.radius);
-  const double chance = -std::log(std::numbers::pi / 2.0 * around.line_density);
-  return branch + unseen - chance;
+  const double variance = (around.bending_rate * length / 3.0 + end.direction_variance) * length * length + fit * fit;
+  constexpr double kLogNorm = -1.0009;
+  const double branch = 2.0 * std::log1p(off * off / (3.0 * variance)) - kLogNorm + 0.5 * std::log(variance);
+  return branch + length / (4.0 * around.radius) - around.chance_cost;
 }
 
 /// The likeliest place of the other path, as far as its shape says.

@@ -36,8 +36,8 @@ bool lies_on(std::vector<Vec3> piece, const std::vector<Vec3>& shape, double rad
       const std::span<const Vec3> own(piece.data() + (inside - first), part.size());
       if (!has_same_chords(own, part, radius)) continue;
       const Pose motion = best_motion(own, part);
-      if (mean_squared_distance(own, part, motion) > 4.0 * radius * radius)
-        continue;  // places along it are off by as much
+      // Samples that slide along the other curve come nearer to it, but no two and a half times as near.
+      if (mean_squared_distance(own, part, motion) > std::pow(2.5 * agreed, 2)) continue;
       if (distance_apart(piece, shape, first, motion) < agreed) return true;
     }
   }

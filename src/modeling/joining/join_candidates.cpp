@@ -56,8 +56,8 @@ bool is_hairpin(const PieceEnd& a, const PieceEnd& b, double radius) {
 /// A tube's direction walks at random along it with variance q a metre and axis. Its place and direction after a
 /// length D are then normal with covariance [q D^3 / 3, q D^2 / 2; q D^2 / 2, q D] an axis, of determinant q^2 D^4 / 12,
 /// and the exponent is the bending energy 4 (a^2 + a b + b^2) / D of the cubic that leaves the chord at angle a and
-/// arrives at angle b, over 2 q. Another tube's end lies anywhere with the ends' density and points anywhere.
-double shape_cost(const PieceEnd& a, const PieceEnd& b, double bending_rate, double radius, double end_density) {
+/// arrives at angle b, over 2 q. `other_cost`: of the other explanation, nats.
+double shape_cost(const PieceEnd& a, const PieceEnd& b, double bending_rate, double radius, double other_cost) {
   const Vec3 chord = b.position - a.position;
   const double length = std::max(chord.norm(), radius);
   const Vec3 onward = (a.outward - b.outward).normalized();
@@ -71,10 +71,7 @@ double shape_cost(const PieceEnd& a, const PieceEnd& b, double bending_rate, dou
   // (leaving and arriving, two axes each), log norm Gamma(7/2) / (Gamma(3/2) (3 pi)^2).
   constexpr double kLogNorm = -3.165;
   const double join = 3.5 * std::log1p(energy / (3.0 * rate)) - kLogNorm + std::log(determinant);
-  // The bridge ends where the tube comes to light again: some radii on, as wide as occluders are.
-  const double unseen = std::log(4.0 * radius);
-  const double other = -std::log(end_density / (4.0 * std::numbers::pi));
-  return join + unseen - other;
+  return join - other_cost;
 }
 
 /// How far the pieces turn within each stretch of that length from the end of a cylinder on, radians, in ascending order.
@@ -261,6 +258,9 @@ std::vector<PossibleJoin> find_possible_joins(const std::vector<TubePiece>& piec
   if (pieces.empty()) return pairs;
   const double radius = pieces.front().radius;
   const double density = static_cast<double>(ends.size()) / bounding_volume(ends, radius);
+  // The bridge ends where the tube comes to light again: some radii on, as wide as occluders are. Another tube's end lies
+  // anywhere with the ends' density and points anywhere.
+  const double other_cost = -std::log(4.0 * radius * density / (4.0 * std::numbers::pi));
   const double stretch = 4.0 * radius;
   const std::vector<double> turns = turns_seen(pieces, stretch);
   std::vector<double> lengths;
@@ -268,7 +268,8 @@ std::vector<PossibleJoin> find_possible_joins(const std::vector<TubePiece>& piec
   for (std::uint32_t a = 0; a < ends.size(); ++a)
     for (std::uint32_t b = a + 1; b < ends.size(); ++b) {
       if (a / 2 == b / 2 || ends[a].is_on_side || ends[b].is_on_side || is_hairpin(ends[a], ends[b], radius)) continue;
-      double cost = shape_cost(ends[a], ends[b], bending_rate, radius, density);
+      double cost = shape_cost(ends[a], ends[b], bending_rate, radius, other_cost);
+      if (!(cost < cost_limit)) continue;
       if (have_directions(ends[a], ends[b])) cost += sharpness_cost(ends[a], ends[b], turns, stretch);
       if (!(cost < cost_limit)) continue;
       cost += free_ends_cost(ends[a], ends[b], occlusion, radius);

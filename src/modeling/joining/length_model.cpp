@@ -78,9 +78,10 @@ std::vector<double> LengthModel::possible_common(std::vector<double> seen) const
   }
   std::sort(of_support.begin(), of_support.end(), std::greater<>());
   std::vector<double> lengths;
-  for (const auto& [support, length] : of_support) {
-    if (lengths.size() == kPossibleLengths) break;
-    if (std::find(lengths.begin(), lengths.end(), length) == lengths.end()) lengths.push_back(length);
+  for (const auto& each : of_support) {
+    const double length = each.second;
+    const auto is_same = [&](double other) { return std::abs(other - length) <= tolerance; };
+    if (lengths.size() < kPossibleLengths && std::ranges::none_of(lengths, is_same)) lengths.push_back(length);
   }
   return lengths;
 }

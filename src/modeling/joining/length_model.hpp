@@ -25,7 +25,8 @@ struct LengthModel {
   /// nats, against common lengths that only the scan tells: each could be any, and is the best of those that are tried.
   double cost_of_common_lengths() const;
 
-  /// Lengths that tubes agree on, of those in sight from end to end: those of the most tube, summed up over them, first.
+  /// Lengths that tubes agree on, of those in sight from end to end, no two alike: those of the most tube, summed up over them,
+  /// first.
   std::vector<double> possible_common(std::vector<double> seen) const;
 
   /// Lengths that two tubes or more agree on, of those in sight from end to end, where there are several; else none.
