@@ -45,6 +45,7 @@ Json scene_json(const ModelingResult& result) {
                {"viewpoint_is_told", found.viewpoint_is_told},
                {"noise_smoothed", rounded(found.noise_smoothed)},
                {"flat_regions", found.flat_regions},
+               {"wire_radius", rounded(found.wire_radius)},
                {"bin", found.bin ? bin_json(*found.bin) : Json()},
                {"radii", radii},
                {"lengths", lengths},

@@ -73,10 +73,25 @@ TubeClasses find_classes(const FilteredCloud& cloud, const ViewProjection& proje
   const std::vector<double> radii = told_radii(options);
   if (options.method == ModelingMethod::region_growing && !radii.empty())
     return {.classes = {{.radius = radii.front(), .radius_error = 0.0, .pieces = {}}},
+            .wires = {},
             .round = {},
             .on_rough_ground = false};
   return find_tube_classes(cloud, projection, scan, background.noise, background.is_known,
                            found.up_is_known ? found.up : Vec3::Zero(), radii);
+}
+
+/// Makes background of the points on the wires of a mesh.
+void set_aside_mesh(const std::vector<TubePiece>& wires, FilteredScene& scene, SceneFound& found) {
+  if (wires.empty()) return;
+  found.wire_radius = wires.front().radius;
+  std::vector<std::uint32_t> before = scene.cloud.source;
+  scene.cloud = without_pieces(scene.cloud, wires);
+  std::vector<std::uint32_t> after = scene.cloud.source, on_wires, all;
+  std::ranges::sort(before);
+  std::ranges::sort(after);
+  std::ranges::set_difference(before, after, std::back_inserter(on_wires));
+  std::ranges::merge(scene.background.set_aside, on_wires, std::back_inserter(all));
+  scene.background.set_aside = std::move(all);
 }
 
 /// Of points that the tubes were not looked for in.
@@ -185,8 +200,10 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
   scan.add_solids(solids_of(background));
   watch.lap(result.seconds.filtering);
 
-  auto [classes, round, on_rough_ground] = find_classes(cloud, projection, scan, background, result.found, options);
+  auto [classes, wires, round, on_rough_ground] =
+      find_classes(cloud, projection, scan, background, result.found, options);
   background.is_rough = on_rough_ground;
+  set_aside_mesh(wires, scene, result.found);
   // What lies in a known bin is there to be found, whatever it is.
   std::vector<TubePiece> balls;
   if (input.bin && options.method == ModelingMethod::centerline)

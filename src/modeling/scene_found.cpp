@@ -42,11 +42,14 @@ std::string describe_found(const ModelingResult& result) {
   const std::string smoothed = found.noise_smoothed > 0.0
                                    ? fmt::format("noise of {:.2f} mm smoothed; ", found.noise_smoothed * 1e3)
                                    : std::string();
+  const std::string mesh = found.wire_radius > 0.0
+                               ? fmt::format("mesh of wires of radius {:.2f} mm; ", found.wire_radius * 1e3)
+                               : std::string();
   return fmt::format(
-      "scene: radius {}; length {}; up {} ({:.2f}, {:.2f}, {:.2f}); viewpoint {}; {}{} flat regions; "
+      "scene: radius {}; length {}; up {} ({:.2f}, {:.2f}, {:.2f}); viewpoint {}; {}{} flat regions; {}"
       "{}; {:.1f} % unexplained",
       radii.empty() ? "none" : radii, length, found.up_is_known ? "along" : "unknown, taken as", found.up.x(),
-      found.up.y(), found.up.z(), viewpoints, smoothed, found.flat_regions, bin, 100.0 * found.unexplained);
+      found.up.y(), found.up.z(), viewpoints, smoothed, found.flat_regions, mesh, bin, 100.0 * found.unexplained);
 }
 
 void add_doubts(ModelingResult& result) {

@@ -62,6 +62,35 @@ TEST(Cell, BottlesAndEdgesAreNoTubesWhereNothingIsTold) {
   EXPECT_EQ(result.radii.size(), 1u);
 }
 
+/// The scene's tubes on a mesh of wires, 5 mm thick and 30 mm apart.
+scene::Scene on_a_mesh(scene::Scene scene) {
+  constexpr double kHalf = 0.24, kApart = 0.03, kWire = 0.0025, kHeight = 0.03;
+  for (scene::PlacedTube& placed : scene.tubes) placed.world_from_tube.translation().z() += kHeight + 3.0 * kWire;
+  const auto add_wire = [&](const Vec3& from, const Vec3& to) {
+    scene.tubes.push_back(tube_along({from, to}));
+    scene.tubes.back().tube.radius = kWire;
+  };
+  for (double at = -kHalf / 2; at < kHalf / 2 + 0.001; at += kApart)
+    add_wire({-kHalf, at, kHeight}, {kHalf, at, kHeight});
+  for (double at = -kHalf; at < kHalf + 0.001; at += kApart)
+    add_wire({at, -kHalf / 2, kHeight + 2.0 * kWire}, {at, kHalf / 2, kHeight + 2.0 * kWire});
+  return scene;
+}
+
+TEST(Cell, WiresOfAMeshAreNoTubes) {
+  scene::Scene scene = on_a_mesh(one_over_three());
+  scene.scanner = looking_from({0.02, 0.0, 1.0});
+  cloud::Cloud cloud = scan::scan(scene).cloud;
+  for (cloud::Label& label : cloud.labels)
+    if (label > 4) label = 0;
+  ModelingInput input = input_of(cloud, scene.bin);
+  input.bin.reset();
+  const ModelingResult result = model_tubes(input, ModelingOptions{});
+  expect_the_tubes_alone(result, cloud);
+  EXPECT_NEAR(result.found.wire_radius, 0.0025, 0.0001);
+  EXPECT_LT(result.found.unexplained, 0.2);
+}
+
 TEST(Cell, ATubeMayEndUpright) {
   scene::Scene scene = scene_of(
       {tube_along({{0.0, -0.1, kRadius}, {0.0, 0.02, 0.08}, {0.0, 0.06, 0.15}, {0.0, 0.08, 0.195}, {0.0, 0.08, 0.235}}),

@@ -75,6 +75,7 @@ struct SceneFound {
   bool viewpoint_is_told = true;              ///< else found from the cloud
   double noise_smoothed = 0.0;      ///< metres, standard deviation of what was taken from a noisy scan; 0: as it is
   std::size_t flat_regions = 0;     ///< set aside as floor, walls and other obstacles
+  double wire_radius = 0.0;         ///< metres, of a mesh's wires that were set aside; 0: no mesh
   std::optional<BinFound> bin;      ///< where the cloud shows one; nothing else rests on it
   double unexplained = 0.0;         ///< part of the filtered points that no tube explains
   std::vector<std::string> doubts;  ///< why the result may not be trusted, as sentences

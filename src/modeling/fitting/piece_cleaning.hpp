@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "tubebin/modeling/filtering.hpp"
 #include "tubebin/modeling/tube_model.hpp"
 
 namespace tubebin::modeling {
@@ -11,6 +12,9 @@ namespace tubebin::modeling {
 /// longer by what their places may be off. A point inside a piece is explained: no other surface can be there.
 Segment unexplained_points(const std::vector<cloud::Point>& points, const std::vector<TubePiece>& pieces,
                            double spacing);
+
+/// What is left of the cloud where its points that the pieces explain are taken away; without normals.
+FilteredCloud without_pieces(const FilteredCloud& cloud, const std::vector<TubePiece>& pieces);
 
 /// Drops thin pieces whose points longer, fully seen ones explain for the most part: in the groove between two tubes
 /// that touch, normals of both mix to a tube that is not there.

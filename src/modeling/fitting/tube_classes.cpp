@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "modeling/fitting/centerline_pieces.hpp"
@@ -13,6 +14,7 @@
 #include "modeling/fitting/rough_ground.hpp"
 #include "modeling/fitting/tube_stretches.hpp"
 #include "modeling/fitting/vote_sheets.hpp"
+#include "modeling/fitting/wire_mesh.hpp"
 #include "modeling/input/normals.hpp"
 #include "modeling/input/point_sample.hpp"
 #include "modeling/input/radius_estimation.hpp"
@@ -67,7 +69,7 @@ class ClassFinder {
       is_rough_ = is_rough_ || possible_.back().has_ground;
       if (radii.size() > 1) set_aside(possible_.back().sure.pieces);
     }
-    return {.classes = settled(possible_, cloud_.spacing), .round = {}, .on_rough_ground = is_rough_};
+    return {.classes = settled(possible_, cloud_.spacing), .wires = {}, .round = {}, .on_rough_ground = is_rough_};
   }
 
   TubeClasses find_all() {
@@ -84,7 +86,8 @@ class ClassFinder {
       set_aside(standing_);
       if (is_believed(found)) {
         set_aside(found.sure.pieces);
-        possible_.push_back(std::move(found));
+        if (is_wire_mesh(found.sure.pieces)) std::ranges::move(found.sure.pieces, std::back_inserter(wires_));
+        else possible_.push_back(std::move(found));
       } else if (found.evidence > weak.evidence && found.unsure.size() < found.sure.pieces.size()) {
         weak = std::move(found);
       }
@@ -93,7 +96,10 @@ class ClassFinder {
     std::vector<TubeClass> classes = settled(possible_, cloud_.spacing);
     for (TubeClass& found : classes) drop_streaks(found);
     std::erase_if(classes, [](const TubeClass& found) { return found.pieces.empty(); });
-    return {.classes = std::move(classes), .round = std::move(round_), .on_rough_ground = is_rough_};
+    return {.classes = std::move(classes),
+            .wires = std::move(wires_),
+            .round = std::move(round_),
+            .on_rough_ground = is_rough_};
   }
 
  private:
@@ -276,14 +282,8 @@ class ClassFinder {
   /// What the pieces do not explain is left for others.
   void set_aside(const std::vector<TubePiece>& pieces) {
     if (pieces.empty()) return;
-    FilteredCloud rest{.source = {}, .points = {}, .normals = {}, .spacing = cloud_.spacing};
-    for (const std::uint32_t i : unexplained_points(left().points, pieces, cloud_.spacing)) {
-      rest.source.push_back(left().source[i]);
-      rest.points.push_back(left().points[i]);
-      if (!left().viewpoints.empty()) rest.viewpoints.push_back(left().viewpoints[i]);
-    }
+    rest_ = without_pieces(left(), pieces);
     normals_.reset();
-    rest_ = std::move(rest);
   }
 
   const FilteredCloud& cloud_;
@@ -297,7 +297,7 @@ class ClassFinder {
   std::optional<FilteredCloud> rest_;
   std::optional<SurfaceNormals> normals_;  ///< of what is left
   std::vector<RoundPlace> round_;
-  std::vector<TubePiece> standing_;
+  std::vector<TubePiece> standing_, wires_;
   std::vector<PossibleClass> possible_;  ///< of the radii so far
 };
 

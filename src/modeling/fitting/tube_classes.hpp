@@ -19,6 +19,7 @@ struct TubeClass {
 
 struct TubeClasses {
   std::vector<TubeClass> classes;
+  std::vector<TubePiece> wires;   ///< of a mesh (wire_mesh.hpp)
   std::vector<RoundPlace> round;  ///< of all of the cloud; none where radii are told, and all is tubes of these
   bool on_rough_ground = false;   ///< some of the ground is rough
 };
