@@ -15,8 +15,8 @@ namespace {
 
 /// Of each of two directions, at least.
 constexpr std::size_t kManyWires = 12;
-/// Of the length of all pieces.
-constexpr double kMostAligned = 0.8;
+/// Of the length of all pieces: hoops of a round basket are bent. Tubes in a bin, straight ones too, have a fifth at most.
+constexpr double kLeastAligned = 0.5;
 /// Radii, from axis to axis; tubes that touch are two apart.
 constexpr double kFarApart = 5.0;
 
@@ -47,11 +47,8 @@ double length_of(const Wires& wires) {
                          [](double sum, const Wire& wire) { return sum + wire.length; });
 }
 
-/// Those that are parallel to the longest.
-Wires longest_parallel(const Wires& wires) {
+Wires parallel_to(const Wires& wires, const Vec3& direction) {
   Wires parallel;
-  if (wires.empty()) return parallel;
-  const Vec3 direction = std::ranges::max(wires, {}, &Wire::length).direction;
   std::ranges::copy_if(wires, std::back_inserter(parallel),
                        [&](const Wire& wire) { return are_parallel(wire.direction, direction); });
   return parallel;
@@ -62,6 +59,18 @@ Wires square_to(const Wires& wires, const Vec3& direction) {
   std::ranges::copy_if(wires, std::back_inserter(square),
                        [&](const Wire& wire) { return are_square(wire.direction, direction); });
   return square;
+}
+
+/// Those that are parallel to the one with the longest such company.
+Wires most_parallel(const Wires& wires) {
+  Wires most;
+  double longest = 0.0;
+  for (const Wire& wire : wires) {
+    Wires parallel = parallel_to(wires, wire.direction);
+    const double length = length_of(parallel);
+    if (length > longest) longest = length, most = std::move(parallel);
+  }
+  return most;
 }
 
 /// To the nearest parallel one that has a part beside it; infinite where there is none.
@@ -87,14 +96,14 @@ std::vector<double> distances_side_by_side(const Wires& parallel) {
 
 bool is_wire_mesh(const std::vector<TubePiece>& pieces) {
   if (pieces.size() < 2 * kManyWires) return false;
-  const Wires wires = straight_pieces(pieces), first = longest_parallel(wires);
+  const Wires wires = straight_pieces(pieces), first = most_parallel(wires);
   if (first.size() < kManyWires) return false;
-  const Wires across = square_to(wires, first.front().direction), second = longest_parallel(across);
+  const Wires across = square_to(wires, first.front().direction), second = most_parallel(across);
   if (second.size() < kManyWires) return false;
   const Wires third = square_to(across, second.front().direction);
   double all = 0.0;
   for (const TubePiece& piece : pieces) all += piece.length();
-  if (length_of(first) + length_of(second) + length_of(third) < kMostAligned * all) return false;
+  if (length_of(first) + length_of(second) + length_of(third) < kLeastAligned * all) return false;
   const double radius = pieces.front().radius;
   return std::ranges::all_of(std::array{&first, &second}, [&](const Wires* parallel) {
     std::vector<double> distances = distances_side_by_side(*parallel);
