@@ -124,7 +124,7 @@ TEST(ScanSmoothing, MovesThePointsOfANoisyScannerAlone) {
 TEST(ScanSmoothing, ShowsAFloorWhoseNoiseIsAsWideAsTheSpacing) {
   const auto points = smooth_picture(picture([](double, double) { return 1.0; }, 0.8 * kStep)).points;
   const SourceView view = view_from_origin(points);
-  const auto regions = find_flat_regions(FlatBlocks(view), view.projection);
+  const auto regions = find_flat_regions(FlatBlocks(view), view);
   ASSERT_EQ(regions.size(), 1u);
   EXPECT_NEAR(regions[0].plane.offset, -1.0, 1e-4);
   EXPECT_GT(regions[0].area, 0.9 * (400 * kStep) * (300 * kStep));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "modeling/input/scan_smoothing.hpp"
 #include "modeling/input/source_views.hpp"
@@ -42,9 +43,9 @@ Background find_background(const ModelingInput& input, const ViewProjection& pro
   const std::vector<SourceView> views = views_of(input, projection, finite);
   background.spacing = spacing_of(views);
   for (const SourceView& view : views) {
-    const FlatBlocks blocks(view);
+    FlatBlocks blocks(view);
     background.is_noisy |= is_noisy(view, blocks);
-    for (FlatRegion& region : find_flat_regions(blocks, view.projection)) {
+    for (FlatRegion& region : find_flat_regions(std::move(blocks), view)) {
       region.is_solid = is_solid(region, view.points, view.spacing.metres);
       background.regions.push_back(region);
     }

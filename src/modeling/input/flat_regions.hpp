@@ -33,7 +33,7 @@ struct FlatRegion {
   bool spans(const Vec3& point, double margin) const;
 };
 
-/// Flat regions of the view that the blocks are of, largest first.
-std::vector<FlatRegion> find_flat_regions(const FlatBlocks& blocks, const ViewProjection& projection);
+/// Flat regions of the view, largest first. `blocks`: of the view; wider ones are taken where noise tilts these.
+std::vector<FlatRegion> find_flat_regions(FlatBlocks blocks, const SourceView& view);
 
 }  // namespace tubebin::modeling
