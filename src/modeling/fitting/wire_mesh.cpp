@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "modeling/median.hpp"
-#include "tubebin/core/geometry.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -38,9 +37,12 @@ Wires straight_pieces(const std::vector<TubePiece>& pieces) {
   return wires;
 }
 
-bool are_parallel(const Vec3& a, const Vec3& b) { return std::abs(a.dot(b)) > std::cos(radians(3.0)); }
+/// Sine, and cosine, of 3 degrees.
+constexpr double kSine = 0.0523, kCosine = 0.9986;
 
-bool are_square(const Vec3& a, const Vec3& b) { return std::abs(a.dot(b)) < std::sin(radians(3.0)); }
+bool are_parallel(const Vec3& a, const Vec3& b) { return std::abs(a.dot(b)) > kCosine; }
+
+bool are_square(const Vec3& a, const Vec3& b) { return std::abs(a.dot(b)) < kSine; }
 
 double length_of(const Wires& wires) {
   return std::accumulate(wires.begin(), wires.end(), 0.0,
@@ -63,14 +65,14 @@ Wires square_to(const Wires& wires, const Vec3& direction) {
 
 /// Those that are parallel to the one with the longest such company.
 Wires most_parallel(const Wires& wires) {
-  Wires most;
-  double longest = 0.0;
-  for (const Wire& wire : wires) {
-    Wires parallel = parallel_to(wires, wire.direction);
-    const double length = length_of(parallel);
-    if (length > longest) longest = length, most = std::move(parallel);
-  }
-  return most;
+  if (wires.empty()) return {};
+  const auto length_along = [&](const Wire& wire) {
+    double length = 0.0;
+    for (const Wire& other : wires)
+      if (are_parallel(wire.direction, other.direction)) length += other.length;
+    return length;
+  };
+  return parallel_to(wires, std::ranges::max(wires, {}, length_along).direction);
 }
 
 /// To the nearest parallel one that has a part beside it; infinite where there is none.
