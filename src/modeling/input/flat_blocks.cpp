@@ -1,5 +1,6 @@
 #include "modeling/input/flat_blocks.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -65,6 +66,26 @@ double noise_beyond_blocks(const FlatBlocks& blocks) {
     return ratios_of_row;
   });
   return ratios.size() < kFew ? 1.0 : std::max(median(ratios), 1.0);
+}
+
+/// The median over squares of four by four blocks: of the variances of their normals in two directions, the smaller as a part of
+/// the larger. Noise tilts blocks in all directions, tubes side by side across the tubes alone.
+double evenness_of_tilts(const FlatBlocks& blocks) {
+  std::vector<double> ratios;
+  for (int row = 0; row + 3 < blocks.rows(); row += 4)
+    for (int column = 0; column + 3 < blocks.columns(); column += 4) {
+      const Window<4> window(blocks, row, column);
+      if (!window.is_measured()) continue;
+      const Vec3 upright = window.plane().normal;
+      PointMoments normals;
+      for (const std::size_t block : window.members()) {
+        const Vec3 normal = FittedPlane(blocks.moments(block), blocks.residual(block)).normal;
+        normals.add(normal.dot(upright) > 0.0 ? normal : Vec3(-normal));
+      }
+      const Vec3 variances = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(normals.covariance()).eigenvalues();
+      ratios.push_back(variances(1) / variances(2));
+    }
+  return ratios.empty() ? 0.0 : median(ratios);
 }
 
 }  // namespace
@@ -172,6 +193,14 @@ void FlatWindows::look_at(const FlatBlocks& blocks, int row, int column) {
   const FittedPlane plane = window.plane();
   for (const std::size_t b : window.members())
     if (plane.mean_square < best_[b].mean_square) best_[b] = plane;
+}
+
+bool are_tilted_by_noise(const FlatBlocks& blocks, const FlatWindows& windows, double spacing) {
+  // Times the variance within blocks; spacings; of noise a third and more, of tubes side by side a twelfth.
+  constexpr double kShared = 1.5, kMuch = 0.4, kEven = 0.2;
+  const double beyond = windows.noise_beyond_blocks();
+  return beyond > kShared && blocks.roughness() * std::sqrt(beyond) > kMuch * spacing &&
+         evenness_of_tilts(blocks) > kEven;
 }
 
 }  // namespace tubebin::modeling

@@ -83,4 +83,8 @@ class FlatWindows {
   std::vector<FittedPlane> best_;
 };
 
+/// Whether noise that neighbouring points share, as stereo cameras have it, tilts the blocks. `windows`: of the blocks; `spacing`:
+/// metres, a quarter of a block's width.
+bool are_tilted_by_noise(const FlatBlocks& blocks, const FlatWindows& windows, double spacing);
+
 }  // namespace tubebin::modeling

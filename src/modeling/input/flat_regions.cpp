@@ -9,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "modeling/median.hpp"
 #include "modeling/parallel.hpp"
 
 namespace tubebin::modeling {
@@ -203,39 +202,6 @@ std::vector<Region> merge_coplanar(std::vector<Region> regions, const FlatBlocks
     if (std::ranges::none_of(merged, one_plane)) merged.push_back(std::move(region));
   }
   return merged;
-}
-
-/// The median over squares of four by four blocks: of the variances of their normals in two directions, the smaller as a part of
-/// the larger. Noise tilts blocks in all directions, tubes side by side across the tubes alone.
-double evenness_of_tilts(const FlatBlocks& blocks) {
-  constexpr int kSize = 4;
-  std::vector<double> ratios;
-  for (int row = 0; row + kSize <= blocks.rows(); row += kSize)
-    for (int column = 0; column + kSize <= blocks.columns(); column += kSize) {
-      std::vector<Vec3> normals;
-      for (int k = 0; k < kSize * kSize; ++k) {
-        const auto block = static_cast<std::size_t>((row + k / kSize) * blocks.columns() + column + k % kSize);
-        if (!blocks.has_plane(block)) continue;
-        const Vec3 normal = FittedPlane(blocks.moments(block), blocks.residual(block)).normal;
-        normals.push_back(normals.empty() || normal.dot(normals.front()) > 0.0 ? normal : Vec3(-normal));
-      }
-      if (normals.size() < kSize * kSize) continue;
-      PointMoments moments;
-      for (const Vec3& normal : normals) moments.add(normal);
-      const Vec3 variances = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments.covariance()).eigenvalues();
-      ratios.push_back(variances(1) / variances(2));
-    }
-  return ratios.empty() ? 0.0 : median(ratios);
-}
-
-/// Whether noise that neighbouring points share, as stereo cameras have it, tilts the blocks. `spacing`: metres, a quarter of a
-/// block's width.
-bool are_tilted_by_noise(const FlatBlocks& blocks, const FlatWindows& windows, double spacing) {
-  // Times the variance within blocks; spacings; of noise a third and more, of tubes side by side a twelfth.
-  constexpr double kShared = 1.5, kMuch = 0.4, kEven = 0.2;
-  const double beyond = windows.noise_beyond_blocks();
-  return beyond > kShared && blocks.roughness() * std::sqrt(beyond) > kMuch * spacing &&
-         evenness_of_tilts(blocks) > kEven;
 }
 
 FlatRegion flat_region(const Region& region, const FlatBlocks& blocks, const Vec3& viewpoint) {

@@ -10,7 +10,7 @@
 namespace tubebin::modeling {
 namespace {
 
-/// At items of candidates, of all nodes of a component: half a second's worth. A node may look at all that are promising.
+/// At items of promising candidates, of all nodes of a component; a node may look at all of them.
 constexpr std::size_t kMostLooks = 20'000'000;
 
 /// One connected component of the problem: items that candidates link, and those candidates.
@@ -39,7 +39,7 @@ class ComponentSolver {
     raise_prices();
     drop_hopeless(price_);
     sort_by_item();
-    nodes_left_ = std::min(nodes_left_, kMostLooks / std::max<std::size_t>(held_, 1));
+    nodes_left_ = std::min(nodes_left_, kMostLooks / std::max<std::size_t>(looks_of_a_node(), 1));
     branch(0.0, bound_);
     return best_;
   }
@@ -148,10 +148,15 @@ class ComponentSolver {
     std::vector<std::pair<double, std::uint32_t>> promising;
     for (const std::uint32_t c : open_) promising.emplace_back(reduced_cost(c), c);
     std::sort(promising.begin(), promising.end());
-    for (const auto& [reduced, c] : promising) {
+    for (const auto& [reduced, c] : promising)
       for (const std::uint32_t i : candidates_[c].items) candidates_of_item_[i].push_back(c);
-      held_ += candidates_[c].items.size();
-    }
+  }
+
+  /// At most.
+  std::size_t looks_of_a_node() const {
+    std::size_t looks = 0;
+    for (const std::uint32_t i : items_) looks += candidates_of_item_[i].size();
+    return looks;
   }
 
   /// `bound`: the least that a cover with what is chosen can cost.
@@ -192,7 +197,6 @@ class ComponentSolver {
   std::vector<bool> covered_;
   std::vector<int> exclusions_;                                 ///< of each place: how many of the chosen exclude it
   std::vector<std::vector<std::uint32_t>> candidates_of_item_;  ///< the promising ones, cheapest first
-  std::size_t held_ = 0;                                        ///< items of the promising ones
   std::vector<std::uint32_t> chosen_, best_;
   double best_cost_ = std::numeric_limits<double>::infinity();
   double bound_ = 0.0;

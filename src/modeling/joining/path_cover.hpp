@@ -26,7 +26,8 @@ struct PathCover {
 /// The cheapest cover found. Every item must have a candidate of its own (a path of one) that takes up no place.
 /// `excluded_by`, of each place: those that no other path of the cover may take up then; mutual. Items that no candidate
 /// links are solved apart. Exact by branch and bound (the set partitioning problem) where a component needs at most
-/// `node_limit` nodes, and fewer where thousands of its candidates are promising; beyond that, the best found by then, which is never worse than taking the paths greedily by saving.
+/// `node_limit` nodes, and fewer where thousands of its candidates are promising; beyond that, the best found by then, which is
+/// never worse than taking the paths greedily by saving.
 PathCover cheapest_path_cover(std::size_t item_count, std::span<const PathCandidate> candidates,
                               std::span<const std::vector<std::uint32_t>> excluded_by, std::size_t node_limit);
 
