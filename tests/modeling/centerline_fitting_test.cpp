@@ -84,5 +84,32 @@ TEST(CenterlineFitting, CutsAPieceWhereItTurnsBackButNotAtAFork) {
   EXPECT_EQ(cut_where_it_turns_back(fork, points).size(), 1U);
 }
 
+std::vector<Vec3> loop_beside(const Vec3& start) {
+  return {start, start + Vec3(kRadius, kRadius, 0), start + Vec3(0, 2.5 * kRadius, 0),
+          start + Vec3(-kRadius, kRadius, 0), start + Vec3(0.1 * kRadius, 0, 0)};
+}
+
+std::vector<Vec3> nodes_of_whole(std::vector<Vec3> nodes) {
+  const auto parts = cut_where_it_turns_back({.nodes = std::move(nodes), .radius = kRadius, .points = {}}, {});
+  return parts.size() == 1 ? parts.front().nodes : std::vector<Vec3>{};
+}
+
+TEST(CenterlineFitting, DropsALoopOfACourse) {
+  const Vec3 start(0, 0, 0), end(0.3, 0, 0);
+  const std::vector<Vec3> loop = loop_beside({0.1, 0, 0}), second = loop_beside({0.2, 0, 0});
+  std::vector<Vec3> nodes = {start};
+  nodes.insert(nodes.end(), loop.begin(), loop.end());
+  nodes.push_back(end);
+  EXPECT_EQ(nodes_of_whole(nodes), (std::vector<Vec3>{start, loop.front(), end}));
+
+  nodes.insert(nodes.end() - 1, second.begin(), second.end());
+  EXPECT_EQ(nodes_of_whole(nodes), nodes) << "of two loops: it is no tube, and stays as it is";
+
+  std::vector<Vec3> ring;
+  for (int k = 0; k <= 12; ++k)
+    ring.push_back(3.0 * kRadius * Vec3(std::cos(radians(30.0 * k)), std::sin(radians(30.0 * k)), 0.0));
+  EXPECT_EQ(nodes_of_whole(ring), ring);
+}
+
 }  // namespace
 }  // namespace tubebin::modeling

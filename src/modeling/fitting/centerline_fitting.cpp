@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "modeling/fitting/end_growth.hpp"
 #include "modeling/fitting/flat_ends.hpp"
@@ -129,6 +130,33 @@ void drop_spikes(std::vector<Vec3>& nodes, double radius) {
   }
 }
 
+/// Two nodes within a radius of each other, the first such pair from `start` on, that a loop of the course lies between; a
+/// tube's course has none.
+std::optional<std::pair<std::size_t, std::size_t>> find_loop(const std::vector<Vec3>& nodes, std::size_t start,
+                                                             double radius) {
+  constexpr double kShortest = 3.0, kLongest = 12.0;  // radii
+  for (std::size_t k = start; k < nodes.size(); ++k) {
+    double length = 0.0;
+    std::optional<std::size_t> back;
+    for (std::size_t next = k + 1; next < nodes.size(); ++next) {
+      length += (nodes[next] - nodes[next - 1]).norm();
+      if (length > kLongest * radius) break;
+      if (length >= kShortest * radius && (nodes[next] - nodes[k]).norm() <= radius) back = next;
+    }
+    if (back) return std::pair(k, *back);
+  }
+  return std::nullopt;
+}
+
+/// Where a course makes a loop, the end of another tube that touches it was followed, too. What makes two is no tube, and
+/// keeps them for those who examine it.
+void drop_loop(std::vector<Vec3>& nodes, double radius) {
+  const auto loop = find_loop(nodes, 0, radius);
+  if (!loop || find_loop(nodes, loop->second, radius)) return;
+  nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(loop->first) + 1,
+              nodes.begin() + static_cast<std::ptrdiff_t>(loop->second) + 1);
+}
+
 }  // namespace
 
 double bend_tolerance(std::span<const VoteCurve> curves, double radius) {
@@ -174,6 +202,7 @@ std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const VoteCu
 
 std::vector<TubePiece> cut_where_it_turns_back(TubePiece piece, std::span<const cloud::Point> points) {
   drop_spikes(piece.nodes, piece.radius);
+  drop_loop(piece.nodes, piece.radius);
   std::vector<TubePiece> parts = {{.nodes = {piece.nodes.front()}, .radius = piece.radius, .points = {}}};
   for (std::size_t k = 1; k + 1 < piece.nodes.size(); ++k) {
     parts.back().nodes.push_back(piece.nodes[k]);
