@@ -51,6 +51,20 @@ TEST(BinRim, LiesFartherOutWhereWallsLean) {
   EXPECT_EQ(points_on_rim(kBin, scan.points, scan.indices, 0.0005, kSpacing), rim);
 }
 
+TEST(BinRim, MayBeHigherOnOneWallThanOnAnother) {
+  Scan scan, uneven;
+  scan.add_rim(kWall, 1);
+  for (const cloud::Point& point : scan.points) {
+    const Vec3 p = kBin.world_from_bin.inverse() * point.cast<double>();
+    const double out = p.x() - kBin.length / 2.0;
+    const bool is_far_wall = out > 0.0 && out > std::abs(p.y()) - kBin.width / 2.0;
+    uneven.add(p.x(), p.y(), is_far_wall ? p.z() + 0.003 : p.z());
+  }
+  const std::vector<std::uint32_t> rim = uneven.indices;
+  for (double y = -0.05; y < 0.05; y += kSpacing) uneven.add(kBin.length / 2.0 + kWall / 2.0, y, kBin.height);
+  EXPECT_EQ(points_on_rim(kBin, uneven.points, uneven.indices, 0.0005, kSpacing), rim);
+}
+
 TEST(BinRim, IsNotWhatLiesHereAndThere) {
   Scan scan;
   scan.add_rim(kWall, 10);

@@ -1,6 +1,7 @@
 #include "modeling/input/bin_rim.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tubebin::modeling {
@@ -9,22 +10,50 @@ namespace {
 /// Walls that lean outward put their rim as far out again.
 constexpr double kFarthestOut = 2.0 * kThickestWall;
 
-/// A point at the walls' height, and how far out from the inner floor, metres.
+/// How much higher or lower than the bin one of its walls may be, metres.
+constexpr double kUneven = 0.005;
+
+/// A point above or on the bin's walls, in metres: its height, and how far out from the inner floor it is.
 struct HighPoint {
   std::uint32_t index = 0;
-  double outside = 0.0;
+  double height = 0.0, outside = 0.0;
 };
+
+/// Those near the upper side of each wall.
+std::array<std::vector<HighPoint>, 4> points_by_wall(const BinFound& bin, std::span<const cloud::Point> points,
+                                                     std::span<const std::uint32_t> indices, double tolerance) {
+  const Pose bin_from_world = bin.world_from_bin.inverse();
+  const Eigen::Array2d inner(bin.length / 2.0, bin.width / 2.0);
+  std::array<std::vector<HighPoint>, 4> walls;
+  for (const std::uint32_t i : indices) {
+    const Vec3 p = bin_from_world * points[i].cast<double>();
+    Eigen::Index axis = 0;
+    const double outside = (p.head<2>().array().abs() - inner).maxCoeff(&axis);
+    if (std::abs(p.z() - bin.height) < kUneven + tolerance && outside > -tolerance && outside < kFarthestOut)
+      walls[static_cast<std::size_t>(axis) * 2 + (p[axis] > 0.0)].push_back({i, p.z(), outside});
+  }
+  return walls;
+}
+
+/// Keeps the points at the height that most of the wall's lie at.
+void keep_commonest_height(std::vector<HighPoint>& wall, double tolerance) {
+  std::ranges::sort(wall, {}, &HighPoint::height);
+  std::ptrdiff_t best = 0, most = 0;
+  for (std::ptrdiff_t first = 0, end = 0; first < std::ssize(wall); ++first) {
+    const auto at = [&](std::ptrdiff_t k) { return wall[static_cast<std::size_t>(k)].height; };
+    while (end < std::ssize(wall) && at(end) < at(first) + 2.0 * tolerance) ++end;
+    if (end - first > most) most = end - first, best = first;
+  }
+  const double height = wall.empty() ? 0.0 : wall[static_cast<std::size_t>(best + most / 2)].height;
+  std::erase_if(wall, [&](const HighPoint& p) { return std::abs(p.height - height) >= tolerance; });
+}
 
 std::vector<HighPoint> points_at_height(const BinFound& bin, std::span<const cloud::Point> points,
                                         std::span<const std::uint32_t> indices, double tolerance) {
-  const Pose bin_from_world = bin.world_from_bin.inverse();
-  const Eigen::Array2d inner(bin.length / 2.0, bin.width / 2.0);
   std::vector<HighPoint> high;
-  for (const std::uint32_t i : indices) {
-    const Vec3 p = bin_from_world * points[i].cast<double>();
-    const double outside = (p.head<2>().array().abs() - inner).maxCoeff();
-    if (std::abs(p.z() - bin.height) < tolerance && outside > -tolerance && outside < kFarthestOut)
-      high.push_back({.index = i, .outside = outside});
+  for (std::vector<HighPoint>& wall : points_by_wall(bin, points, indices, tolerance)) {
+    keep_commonest_height(wall, tolerance);
+    high.insert(high.end(), wall.begin(), wall.end());
   }
   return high;
 }
@@ -57,6 +86,7 @@ std::vector<std::uint32_t> points_on_rim(const BinFound& bin, std::span<const cl
   std::vector<std::uint32_t> on_rim;
   for (const HighPoint& p : high)
     if (p.outside > inner - tolerance && p.outside < outer) on_rim.push_back(p.index);
+  std::ranges::sort(on_rim);
   return on_rim;
 }
 
