@@ -17,6 +17,8 @@ constexpr double kHiddenLengthCostLimit = 6.0;
 /// What may be no tube and what no tube explains is as likely chance as not: e^-3.
 constexpr double kChanceCostLimit = 3.0;
 constexpr std::size_t kPossibleLengths = 4;
+/// Before the scan tells: a bin holds one kind of tube ten times as often as any.
+constexpr double kOddsOfOneLength = 10.0;
 
 }  // namespace
 
@@ -60,7 +62,7 @@ double LengthModel::gain_beside(double one, double length, double bridged, doubl
 }
 
 double LengthModel::cost_of_common_lengths() const {
-  double cost = 0.0;
+  double cost = common.size() == 1 ? -std::log(kOddsOfOneLength) : 0.0;
   for (const double one : common)
     cost += gain_beside(one, one, 0.0, 0.0) + std::log(static_cast<double>(kPossibleLengths));
   return cost;

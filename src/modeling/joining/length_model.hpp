@@ -22,7 +22,8 @@ struct LengthModel {
   /// `longest_likely` are as likely for.
   double gain(double length, double bridged, double room) const;
 
-  /// nats, against common lengths that only the scan tells: each could be any, and is the best of those that are tried.
+  /// nats, against common lengths that only the scan tells: each could be any, and is the best of those that are tried. That all
+  /// tubes have one is likely before.
   double cost_of_common_lengths() const;
 
   /// Lengths that tubes agree on, of those in sight from end to end, no two alike: those of the most tube, summed up over them,

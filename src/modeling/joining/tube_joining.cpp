@@ -104,8 +104,8 @@ double entropy(double yes, double all) {
 }
 
 /// What speaks against the cover, nats. How often a tube seems to have none of the common lengths, since the rest of it is
-/// lost or is another's, the cover itself tells: in a crowded pile that is every second one. Short chains may be no
-/// tubes, and tell nothing.
+/// lost or is another's, the cover itself tells: in a crowded pile that is every second one. What is longer in one piece is
+/// neither. Short chains may be no tubes, and tell nothing.
 double cost_of(const Cover& cover) {
   constexpr double kOff = 2.0;  // nats, two standard deviations of length
   double cost = cover.lengths.cost_of_common_lengths(), off = 0.0, on = 0.0;
@@ -115,6 +115,7 @@ double cost_of(const Cover& cover) {
       on += 1.0;
       continue;
     }
+    if (chain.bridged == 0.0 && chain.length > std::ranges::max(cover.lengths.common)) continue;
     cost -= chain.length_cost;
     if (chain.length >= kShort * cover.lengths.radius) off += 1.0;
   }
