@@ -84,22 +84,6 @@ TEST(CenterlineFitting, CutsAPieceWhereItTurnsBackButNotAtAFork) {
   EXPECT_EQ(cut_where_it_turns_back(fork, points).size(), 1U);
 }
 
-TEST(CenterlineFitting, CutsAPieceWhereItLeadsOverToATubeBeside) {
-  const std::vector<Vec3> first = {{0, 0, 0}, {0.1, 0, 0}}, second = {{0.09, 2 * kRadius, 0}, {0.2, 2 * kRadius, 0}};
-  const TubePiece both{.nodes = {first[0], first[1], second[0], second[1]}, .radius = kRadius, .points = {0, 1}};
-  const std::vector<cloud::Point> points = {{0.05f, 0.0f, 0.0125f}, {0.15f, 0.025f, 0.0125f}};
-  const std::vector<TubePiece> parts = cut_where_it_turns_back(both, points);
-  ASSERT_EQ(parts.size(), 2U);
-  EXPECT_EQ(parts[0].nodes, first);
-  EXPECT_EQ(parts[1].nodes, second);
-  EXPECT_EQ(parts[0].points, Segment{0});
-  EXPECT_EQ(parts[1].points, Segment{1});
-
-  std::vector<Vec3> bent = both.nodes;
-  bent[2].x() = 0.11;
-  EXPECT_EQ(cut_where_it_turns_back({.nodes = bent, .radius = kRadius, .points = {0, 1}}, points).size(), 1U);
-}
-
 std::vector<Vec3> loop_beside(const Vec3& start) {
   return {start, start + Vec3(kRadius, kRadius, 0), start + Vec3(0, 2.5 * kRadius, 0),
           start + Vec3(-kRadius, kRadius, 0), start + Vec3(0.1 * kRadius, 0, 0)};

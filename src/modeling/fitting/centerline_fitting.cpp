@@ -115,21 +115,9 @@ bool is_short(const VoteCurve& votes, double radius) {
   return votes.samples.size() < 2 || polyline_length(votes.samples) < 2.0 * radius;
 }
 
-/// At node k, which is no end.
-double cosine_of_turn(const std::vector<Vec3>& nodes, std::size_t k) {
-  return (nodes[k] - nodes[k - 1]).normalized().dot((nodes[k + 1] - nodes[k]).normalized());
-}
-
 bool turns_back(const std::vector<Vec3>& nodes, std::size_t k) {
   constexpr double kCosine = -0.98;  // of 169 degrees; paths of trees that fork narrowly turn nearly as much
-  return cosine_of_turn(nodes, k) < kCosine;
-}
-
-/// Whether node k leads over to another tube beside: two turns by more than a right angle within three radii.
-bool leads_over(const std::vector<Vec3>& nodes, std::size_t k, double radius) {
-  constexpr double kCosine = -0.2;  // of 102 degrees
-  return k + 2 < nodes.size() && (nodes[k + 1] - nodes[k]).norm() < 3.0 * radius &&
-         std::max(cosine_of_turn(nodes, k), cosine_of_turn(nodes, k + 1)) < kCosine;
+  return (nodes[k] - nodes[k - 1]).normalized().dot((nodes[k + 1] - nodes[k]).normalized()) < kCosine;
 }
 
 /// At a fork a node may be drawn out of the trunk toward the branch.
@@ -218,10 +206,7 @@ std::vector<TubePiece> cut_where_it_turns_back(TubePiece piece, std::span<const 
   std::vector<TubePiece> parts = {{.nodes = {piece.nodes.front()}, .radius = piece.radius, .points = {}}};
   for (std::size_t k = 1; k + 1 < piece.nodes.size(); ++k) {
     parts.back().nodes.push_back(piece.nodes[k]);
-    if (leads_over(piece.nodes, k, piece.radius))
-      parts.push_back({.nodes = {piece.nodes[++k]}, .radius = piece.radius, .points = {}});
-    else if (turns_back(piece.nodes, k))
-      parts.push_back({.nodes = {piece.nodes[k]}, .radius = piece.radius, .points = {}});
+    if (turns_back(piece.nodes, k)) parts.push_back({.nodes = {piece.nodes[k]}, .radius = piece.radius, .points = {}});
   }
   parts.back().nodes.push_back(piece.nodes.back());
   if (parts.size() == 1) return {std::move(piece)};

@@ -24,9 +24,8 @@ std::vector<Vec3> first_nodes(const VoteCurve& votes, double tolerance, double r
 std::optional<TubePiece> fit_centerline(const FilteredCloud& cloud, const VoteCurve& votes, double tolerance,
                                         const LoosePoints& loose, double radius, const Vec3& viewpoint);
 
-/// A piece that turns back, or twice by more than a right angle within a few radii, goes over from one tube to another, or runs
-/// twice along one: its parts, each with the points that are nearest to it. A single loop, which the end of another tube
-/// makes, goes.
+/// A piece that turns back goes over from one tube to another, or runs twice along one: its parts, each with the points that
+/// are nearest to it. A single loop, which the end of another tube makes, goes.
 std::vector<TubePiece> cut_where_it_turns_back(TubePiece piece, std::span<const cloud::Point> points);
 
 }  // namespace tubebin::modeling
