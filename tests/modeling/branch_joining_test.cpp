@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "modeling/joining/branch_links.hpp"
 #include "modeling/lid_scene.hpp"
 
 namespace tubebin::modeling {
@@ -35,6 +36,20 @@ TEST_F(BranchJoining, ATubeThatEndsBesideAnotherIsNoBranchOfIt) {
   EXPECT_EQ(join_branches(tree(0.3, 2.1 * kRadius), kRadius, occlusion(), 0.0).tubes.size(),
             2u);  // the gap is in sight
   EXPECT_TRUE(join_branches({}, kRadius, occlusion(), 0.0).tubes.empty());
+}
+
+TEST_F(BranchJoining, ATubeThatRunsAcrossAnotherIsNoBranchOfIt) {
+  std::vector<TubePath> paths = tree(0.3, 0.5 * kRadius);
+  paths.push_back(path({{0.0, 0.3 - 0.5 * kRadius, 0}, {0.0, 0.2, 0}}));
+  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0, kLongest).tubes.size(), 3u);
+  paths.back() = path({{0.1, 0.3 - 0.5 * kRadius, 0}, {0.1, 0.2, 0}});  // two branches, at two places
+  EXPECT_EQ(join_likely_branches(paths, kRadius, occlusion(), 0.0, kLongest).tubes.size(), 1u);
+
+  std::vector<TubePiece> pieces;
+  for (const TubePath& p : paths) pieces.push_back({.nodes = p.nodes, .radius = kRadius, .points = {}});
+  EXPECT_TRUE(show_branches(pieces, find_piece_ends(pieces, occlusion(), kLongest)));
+  for (Vec3& node : pieces.back().nodes) node.x() = 0.0;
+  EXPECT_FALSE(show_branches(pieces, find_piece_ends(pieces, occlusion(), kLongest)));
 }
 
 TEST_F(BranchJoining, AmongTubesOfOneLengthOnlyWhatIsNotAsLongIsABranch) {

@@ -35,8 +35,8 @@ std::array<std::vector<HighPoint>, 4> points_by_wall(const BinFound& bin, std::s
   return walls;
 }
 
-/// Keeps the points at the height that most of the wall's lie at.
-void keep_commonest_height(std::vector<HighPoint>& wall, double tolerance) {
+/// Keeps the points at the height that most of the wall's lie at: the bin's, but for an uneven wall.
+void keep_commonest_height(std::vector<HighPoint>& wall, double of_bin, double tolerance) {
   std::ranges::sort(wall, {}, &HighPoint::height);
   std::ptrdiff_t best = 0, most = 0;
   for (std::ptrdiff_t first = 0, end = 0; first < std::ssize(wall); ++first) {
@@ -44,7 +44,8 @@ void keep_commonest_height(std::vector<HighPoint>& wall, double tolerance) {
     while (end < std::ssize(wall) && at(end) < at(first) + 2.0 * tolerance) ++end;
     if (end - first > most) most = end - first, best = first;
   }
-  const double height = wall.empty() ? 0.0 : wall[static_cast<std::size_t>(best + most / 2)].height;
+  const double commonest = wall.empty() ? of_bin : wall[static_cast<std::size_t>(best + most / 2)].height;
+  const double height = std::abs(commonest - of_bin) < tolerance ? of_bin : commonest;
   std::erase_if(wall, [&](const HighPoint& p) { return std::abs(p.height - height) >= tolerance; });
 }
 
@@ -52,7 +53,7 @@ std::vector<HighPoint> points_at_height(const BinFound& bin, std::span<const clo
                                         std::span<const std::uint32_t> indices, double tolerance) {
   std::vector<HighPoint> high;
   for (std::vector<HighPoint>& wall : points_by_wall(bin, points, indices, tolerance)) {
-    keep_commonest_height(wall, tolerance);
+    keep_commonest_height(wall, bin.height, tolerance);
     high.insert(high.end(), wall.begin(), wall.end());
   }
   return high;

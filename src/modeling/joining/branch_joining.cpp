@@ -42,6 +42,18 @@ void keep_one_of_each_branch(std::vector<BranchLink>& links) {
   std::erase_if(links, [&](const BranchLink& link) { return !branches.insert(link.end / 2).second; });
 }
 
+/// A tube that runs across another one, and seems to end on both of its sides, is no two branches.
+void drop_crossings(std::vector<BranchLink>& links, const std::vector<PieceEnd>& ends, double radius) {
+  const auto go_on_as_each_other = [&](const BranchLink& a, const BranchLink& b) {
+    return a.other == b.other && faces(ends[a.end], ends[b.end], radius);
+  };
+  std::vector<BranchLink> kept;
+  for (const BranchLink& link : links)
+    if (std::ranges::none_of(links, [&](const BranchLink& other) { return go_on_as_each_other(link, other); }))
+      kept.push_back(link);
+  links = std::move(kept);
+}
+
 /// Paths that may branch off each other.
 struct Branching {
   std::vector<TubePath> paths;    ///< cut back to the tubes that they run through
@@ -98,6 +110,7 @@ BranchedTubes join_likely_branches(std::vector<TubePath> paths, double radius, c
            is_too_long(link);
   };
   std::erase_if(links, is_no_branch);
+  drop_crossings(links, branching.ends, radius);
   keep_one_of_each_branch(links);
   const TreeJoiner joiner = branching.joiner();
   BranchedTubes joining;

@@ -142,10 +142,21 @@ std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const st
   return is_at_end ? std::nullopt : place;
 }
 
+bool faces(const PieceEnd& a, const PieceEnd& b, double radius) {
+  constexpr double kAcross = 4.0, kOpposite = -0.8;  // radii; the cosine of 143 degrees
+  return (a.position - b.position).norm() < kAcross * radius && a.outward.dot(b.outward) < kOpposite;
+}
+
 bool show_branches(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends) {
+  // A tube that runs across another one may seem to end on both of its sides.
+  const auto is_crossing = [&](const PieceEnd& end) {
+    return std::ranges::any_of(
+        ends, [&](const PieceEnd& other) { return other.is_on_side && faces(end, other, pieces.front().radius); });
+  };
   const auto whole = std::ranges::count_if(pieces, [](const TubePiece& piece) { return !is_fragment(piece); });
   std::size_t branches = 0;
-  for (std::size_t end = 0; end < ends.size(); ++end) branches += ends[end].is_on_side && is_long(pieces[end / 2]);
+  for (std::size_t end = 0; end < ends.size(); ++end)
+    branches += ends[end].is_on_side && is_long(pieces[end / 2]) && !is_crossing(ends[end]);
   return branches > 0 && 100 * (branches - 1) > static_cast<std::size_t>(whole);
 }
 

@@ -30,8 +30,11 @@ std::optional<Vec3> place_on_side(const Vec3& tip, const Vec3& outward, const st
 /// As long as two diameters, longer than the bits of surface beside bends.
 bool is_long(const TubePiece& piece);
 
+/// Whether the ends are as near and as opposite as those of a tube on either side of another that it runs across.
+bool faces(const PieceEnd& a, const PieceEnd& b, double radius);
+
 /// Whether pieces show that the scene's tubes branch: but for one of them, more than one in a hundred is long and meets another's
-/// side. Of chance one in some thousand does.
+/// side, and none goes on across it. Of chance one in some thousand does.
 bool show_branches(const std::vector<TubePiece>& pieces, const std::vector<PieceEnd>& ends);
 
 /// The links that the evidence does not rule out (cost below `cost_limit`), cheapest first.
