@@ -104,6 +104,7 @@ TEST(CenterlineFitting, DropsALoopOfACourse) {
 
   nodes.insert(nodes.end() - 1, second.begin(), second.end());
   EXPECT_EQ(nodes_of_whole(nodes), nodes) << "of two loops: it is no tube, and stays as it is";
+  EXPECT_EQ(nodes_of_whole(loop), loop) << "nothing but a loop";
 
   std::vector<Vec3> ring;
   for (int k = 0; k <= 12; ++k)

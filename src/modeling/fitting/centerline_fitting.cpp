@@ -148,13 +148,14 @@ std::optional<std::pair<std::size_t, std::size_t>> find_loop(const std::vector<V
   return std::nullopt;
 }
 
-/// Where a course makes a loop, the end of another tube that touches it was followed, too. What makes two is no tube, and
-/// keeps them for those who examine it.
+/// Where a course makes a loop, the end of another tube that touches it was followed, too. What makes two, or is hardly more than
+/// one, is no tube, and keeps them for those who examine it.
 void drop_loop(std::vector<Vec3>& nodes, double radius) {
   const auto loop = find_loop(nodes, 0, radius);
   if (!loop || find_loop(nodes, loop->second, radius)) return;
-  nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(loop->first) + 1,
-              nodes.begin() + static_cast<std::ptrdiff_t>(loop->second) + 1);
+  std::vector<Vec3> without(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(loop->first) + 1);
+  without.insert(without.end(), nodes.begin() + static_cast<std::ptrdiff_t>(loop->second) + 1, nodes.end());
+  if (polyline_length(without) >= radius / 2.0) nodes = std::move(without);
 }
 
 }  // namespace
