@@ -189,20 +189,19 @@ std::vector<NearestSurface> nearest_surfaces(std::span<const cloud::Point> point
   const auto find_nearest = [&](std::size_t i) {
     nearest[i].distance = std::numeric_limits<float>::infinity();
     // A cube's cylinders are sorted, so those of one surface follow each other.
-    std::uint32_t surface = NearestSurface::kNone;
-    float least = 0.0f, limit = 0.0f;
+    const SolidCylinder* own = nullptr;  // the nearest of the surface's cylinders
+    float least = 0.0f;
     const auto keep_if_nearest = [&] {
-      if (surface != NearestSurface::kNone && std::abs(least) < std::min(limit, std::abs(nearest[i].distance)))
-        nearest[i] = {.surface = surface, .distance = least};
+      if (own && std::abs(least) < std::abs(nearest[i].distance) && std::abs(least) < own->reach_of(points[i], reach))
+        nearest[i] = {.surface = own->surface, .distance = least};
     };
     for (const std::uint32_t c : grid.near(points[i])) {
       const float distance = cylinders[c].signed_distance(points[i]);
-      const bool is_next = cylinders[c].surface != surface;
+      const bool is_next = !own || cylinders[c].surface != own->surface;
       if (is_next) keep_if_nearest();
       if (!is_next && distance >= least) continue;
-      surface = cylinders[c].surface;
+      own = &cylinders[c];
       least = distance;
-      limit = cylinders[c].reach_of(points[i], reach);
     }
     keep_if_nearest();
   };

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "modeling/doubtful_tubes.hpp"
@@ -100,37 +101,46 @@ std::vector<cloud::Label> labels_of_further(const std::vector<std::uint32_t>& in
   return label_further_points(points_at(scene.input.points, indices), tubes, scene.background);
 }
 
+constexpr cloud::Label kNone = std::numeric_limits<cloud::Label>::max();
+
+/// Sets those that are not set yet: labels[k] that of the input's point indices[k].
+void fill(std::vector<cloud::Label>& of_input, const std::vector<std::uint32_t>& indices,
+          const std::vector<cloud::Label>& labels) {
+  for (std::size_t k = 0; k < indices.size(); ++k)
+    if (of_input[indices[k]] == kNone) of_input[indices[k]] = labels[k];
+}
+
 /// Labels of the filtered points, of those that lie alone, and of those that a plane took from a tube.
 void label(FilteredScene& scene, PointLabels labels, const ModelingOptions& options, ModelingResult& result) {
   auto& [measured, input, found, projection, background, cloud] = scene;
   if (background.is_known && options.method == ModelingMethod::centerline)
     label_mixed_pixels(cloud, projection, result.tubes, labels.labels);
   result.noise = std::max(labels.noise, found.noise_smoothed);
-  result.labels = std::move(labels.labels);
-  result.source = std::move(cloud.source);
-  const auto unexplained = static_cast<double>(std::ranges::count(result.labels, cloud::Label{0}));
-  result.found.unexplained = unexplained / std::max(static_cast<double>(result.labels.size()), 1.0);
-  std::ranges::copy(labels_of_further(cloud.alone, scene, result.tubes), std::back_inserter(result.labels));
-  std::ranges::copy(cloud.alone, std::back_inserter(result.source));
-  const bool adds = options.filtering.ratio >= 1.0 && !input.bin;
-  if (!adds && !options.label_all) return;
+  const auto unexplained = static_cast<double>(std::ranges::count(labels.labels, cloud::Label{0}));
+  result.found.unexplained = unexplained / std::max(static_cast<double>(labels.labels.size()), 1.0);
+  std::vector<cloud::Label> of_input(input.points.size(), kNone);
+  fill(of_input, cloud.source, labels.labels);
+  fill(of_input, cloud.alone, labels_of_further(cloud.alone, scene, result.tubes));
 
-  const auto set_aside = label_set_aside(points_at(input.points, background.set_aside), result.tubes,
-                                         std::max(background.noise, labels.noise / 2.0), projection,
-                                         viewpoints_of(input, background.set_aside));
-  for (std::size_t k = 0; adds && k < set_aside.size(); ++k) {
-    if (set_aside[k] == 0) continue;
-    result.source.push_back(background.set_aside[k]);
-    result.labels.push_back(set_aside[k]);
+  const bool adds = options.filtering.ratio >= 1.0 && !input.bin;
+  std::vector<cloud::Label> set_aside;
+  if (adds || options.label_all)
+    set_aside = label_set_aside(points_at(input.points, background.set_aside), result.tubes,
+                                std::max(background.noise, labels.noise / 2.0), projection,
+                                viewpoints_of(input, background.set_aside));
+  for (std::size_t k = 0; adds && k < set_aside.size(); ++k)
+    if (set_aside[k] > 0) of_input[background.set_aside[k]] = set_aside[k];
+  for (std::uint32_t i = 0; i < of_input.size(); ++i) {
+    if (of_input[i] == kNone) continue;
+    result.source.push_back(i);
+    result.labels.push_back(of_input[i]);
   }
   if (!options.label_all) return;
-  result.all_labels.assign(input.points.size(), 0);
-  if (options.filtering.ratio < 1.0) {
-    const auto further = labels_of_further(background.foreground, scene, result.tubes);
-    for (std::size_t k = 0; k < further.size(); ++k) result.all_labels[background.foreground[k]] = further[k];
-  }
-  for (std::size_t k = 0; k < set_aside.size(); ++k) result.all_labels[background.set_aside[k]] = set_aside[k];
-  for (std::size_t k = 0; k < result.source.size(); ++k) result.all_labels[result.source[k]] = result.labels[k];
+  fill(of_input, background.set_aside, set_aside);
+  if (options.filtering.ratio < 1.0)
+    fill(of_input, background.foreground, labels_of_further(background.foreground, scene, result.tubes));
+  std::ranges::replace(of_input, kNone, cloud::Label{0});
+  result.all_labels = std::move(of_input);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <new>
 #include <numbers>
-#include <numeric>
 
 #include "tubebin/cloud/cloud_io.hpp"
 #include "tubebin/cloud/label_colors.hpp"
@@ -69,15 +68,6 @@ void require_viewpoint_per_source(const CloudToModel& input, const ModelConfig& 
   if (const std::size_t sources = count_sources(input.cloud); sources > viewpoints)
     throw_config_error("{}: has {} sources, and the viewpoints of {} are told; valid: one for each source, from 0",
                        input.path, sources, viewpoints);
-}
-
-/// Places in `result` in the order of the input's points.
-std::vector<std::size_t> input_order(const modeling::ModelingResult& result) {
-  std::vector<std::size_t> order(result.source.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return result.source[a] < result.source[b]; });
-  return order;
 }
 
 /// Beyond it, neighbours of a float differ by more than a tube's wall, and squares and grids overflow.
@@ -202,8 +192,7 @@ modeling::ModelingResult label_cloud(const CloudToModel& input, const ModelConfi
 
 cloud::Cloud filtered_cloud(const cloud::Cloud& input, const modeling::ModelingResult& result) {
   cloud::Cloud cloud = unorganized(input, result.source.size());
-  for (const std::size_t k : input_order(result)) {
-    const std::uint32_t i = result.source[k];
+  for (const std::uint32_t i : result.source) {
     cloud.points.push_back(input.points[i]);
     if (!input.colors.empty()) cloud.colors.push_back(input.colors[i]);
     if (!input.labels.empty()) cloud.labels.push_back(input.labels[i]);
@@ -230,7 +219,7 @@ std::vector<cloud::Color> model_colors(const modeling::ModelingResult& result) {
 cloud::Cloud labeled_cloud(const cloud::Cloud& input, const modeling::ModelingResult& result) {
   cloud::Cloud cloud = unorganized(input, result.source.size());
   const std::vector<cloud::Color> colors = model_colors(result);
-  for (const std::size_t k : input_order(result)) {
+  for (std::size_t k = 0; k < result.source.size(); ++k) {
     cloud.points.push_back(input.points[result.source[k]]);
     cloud.colors.push_back(colors[result.labels[k]]);
     cloud.labels.push_back(result.labels[k]);

@@ -82,7 +82,7 @@ struct SceneFound {
 };
 
 struct ModelingResult {
-  std::vector<std::uint32_t> source;  ///< of each filtered point, its index in the input
+  std::vector<std::uint32_t> source;  ///< of each filtered point, its index in the input, ascending
   std::vector<cloud::Label> labels;   ///< of each filtered point: k for tubes[k - 1], 0 where it belongs to none
   std::vector<TubeModel> tubes;
   double radius = 0.0;                ///< metres: as given, or as estimated
