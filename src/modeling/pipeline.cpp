@@ -249,7 +249,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
     if (reach_end_discs(result.tubes, cloud, labels.labels, projection, scan, result.lengths)) label_again();
   }
   label(scene, std::move(labels), options, result);
-  add_doubts(result);
+  add_doubts(result, !told_radii(options).empty());
   watch.lap(result.seconds.labeling);
   return result;
 }

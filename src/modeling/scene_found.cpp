@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 namespace tubebin::modeling {
 
@@ -52,7 +53,26 @@ std::string describe_found(const ModelingResult& result) {
       found.up.y(), found.up.z(), viewpoints, smoothed, found.flat_regions, mesh, bin, 100.0 * found.unexplained);
 }
 
-void add_doubts(ModelingResult& result) {
+namespace {
+
+/// Tubes of a bin are mostly alike. One alone that is far thicker may be of something else.
+void doubt_a_lone_thick_tube(const std::vector<TubeModel>& tubes, std::vector<std::string>& doubts) {
+  constexpr double kFarThicker = 3.0;
+  std::map<double, std::size_t> count_of_radius;
+  for (const TubeModel& tube : tubes) ++count_of_radius[tube.radius];
+  if (count_of_radius.empty()) return;
+  const auto& [common, count] =
+      *std::ranges::max_element(count_of_radius, {}, [](const auto& of) { return of.second; });
+  for (const TubeModel& tube : tubes)
+    if (count_of_radius[tube.radius] == 1 && tube.length() > 0.0 && tube.radius > kFarThicker * common)
+      doubts.push_back(fmt::format(
+          "one tube alone has a radius of {:.2f} mm, and {} have {:.2f} mm: it may be part of a robot, or a bottle",
+          tube.radius * 1e3, count, common * 1e3));
+}
+
+}  // namespace
+
+void add_doubts(ModelingResult& result, bool radii_are_told) {
   auto& doubts = result.found.doubts;
   constexpr double kWidestTube = 0.3;  // metres
   if (result.tubes.empty())
@@ -64,6 +84,7 @@ void add_doubts(ModelingResult& result) {
   if (!result.tubes.empty() && result.found.unexplained > 1.0 / 3.0)
     doubts.push_back(
         fmt::format("{:.0f} % of the points that are not flat lie on no tube", 100.0 * result.found.unexplained));
+  if (!radii_are_told) doubt_a_lone_thick_tube(result.tubes, doubts);
 }
 
 }  // namespace tubebin::modeling

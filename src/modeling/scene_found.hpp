@@ -14,6 +14,6 @@ void describe_scene(const Background& background, const ViewProjection& projecti
                     SceneFound& found);
 
 /// Says in `found.doubts` what of the result looks wrong.
-void add_doubts(ModelingResult& result);
+void add_doubts(ModelingResult& result, bool radii_are_told);
 
 }  // namespace tubebin::modeling

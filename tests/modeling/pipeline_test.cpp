@@ -1,6 +1,6 @@
 #include "tubebin/modeling/pipeline.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <map>
 
@@ -9,6 +9,10 @@
 
 namespace tubebin::modeling {
 namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 constexpr double kR = kRadius;
 
@@ -160,15 +164,18 @@ TEST(Pipeline, EstimatesTheRadiusOfARing) {
   EXPECT_GE(micro_recall_of(result, cloud), 0.99);
 }
 
+/// Slightly bent, across the bin.
+scene::PlacedTube tube_of(double radius, double y) {
+  scene::PlacedTube placed = tube_along({{-0.2, y, radius}, {0, y + 0.02, radius}, {0.2, y, radius}});
+  placed.tube.radius = radius;
+  return placed;
+}
+
 TEST(Pipeline, FindsThreeRadiiInAKnownBin) {
-  const auto thick = [](double radius, double y) {
-    scene::PlacedTube placed = tube_along({{-0.2, y, radius}, {0, y + 0.02, radius}, {0.2, y, radius}});
-    placed.tube.radius = radius;
-    return placed;
-  };
   // A quarter apart: neither's exclusion of its own surroundings hides the other.
-  const scene::Scene scene = scene_of({thick(0.0125, -0.15), thick(0.0125, -0.1), thick(0.0125, -0.05),
-                                       thick(0.01, 0.0), thick(0.01, 0.05), thick(0.008, 0.1), thick(0.008, 0.14)});
+  const scene::Scene scene =
+      scene_of({tube_of(0.0125, -0.15), tube_of(0.0125, -0.1), tube_of(0.0125, -0.05), tube_of(0.01, 0.0),
+                tube_of(0.01, 0.05), tube_of(0.008, 0.1), tube_of(0.008, 0.14)});
   const cloud::Cloud cloud = scan::scan(scene).cloud;
   ModelingResult result = model_tubes(input_of(cloud, scene.bin), ModelingOptions{});
   std::ranges::sort(result.radii, std::greater<>());
@@ -178,6 +185,21 @@ TEST(Pipeline, FindsThreeRadiiInAKnownBin) {
   EXPECT_NEAR(result.radii[2], 0.008, 0.0001);
   EXPECT_EQ(result.tubes.size(), 7u);
   EXPECT_GE(micro_recall_of(result, cloud), 0.99);
+}
+
+TEST(Pipeline, DoubtsATubeAloneThatIsFarThicker) {
+  std::vector<scene::PlacedTube> tubes = {tube_of(kRadius, -0.15), tube_of(kRadius, -0.1), tube_of(kRadius, -0.05)};
+  const auto doubts = [&](const ModelingOptions& options) {
+    const cloud::Cloud cloud = scan::scan(scene_of(tubes)).cloud;
+    const ModelingInput input{.points = cloud.points, .world_from_sensor = cloud.world_from_sensor, .bin = {}};
+    return model_tubes(input, options).found.doubts;
+  };
+  EXPECT_THAT(doubts({}), IsEmpty());
+  tubes.push_back(tube_of(0.04, 0.08));
+  EXPECT_THAT(doubts({}), ElementsAre(HasSubstr("alone has a radius of 40.")));
+  ModelingOptions told = known_radius();
+  told.other_radii = {{0.04}};
+  EXPECT_THAT(doubts(told), IsEmpty());
 }
 
 TEST(Pipeline, KeepsTheStatedShareOfThePoints) {
