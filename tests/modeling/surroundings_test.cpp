@@ -155,6 +155,27 @@ TEST(Surroundings, PointsThatLieAloneMakeTheOthersSeemNoFartherApart) {
   EXPECT_EQ(result.tubes.size(), 2u);
 }
 
+/// Round ribs half as thick as the tubes, of which the floor covers the lower part.
+TEST(Surroundings, RibsOfAFloorAreNoTubes) {
+  constexpr double kRib = kRadius / 2.0;
+  std::vector<scene::PlacedTube> all;
+  for (const double y : {-0.09, 0.01, 0.11}) {
+    all.push_back(tube_along({{-0.2, y, kRib / 2.0}, {0.2, y, kRib / 2.0}}));
+    all.back().tube.radius = kRib;
+  }
+  const auto radii = [&] {
+    const cloud::Cloud cloud = scan::scan(scene_of(all)).cloud;
+    return model_tubes({.points = cloud.points, .world_from_sensor = cloud.world_from_sensor, .bin = {}}, {}).radii;
+  };
+  EXPECT_TRUE(radii().empty());
+  const double high = 1.5 * kRib + kRadius;
+  all.push_back(tube_along({{-0.1, -0.12, high}, {-0.05, 0.12, high}}));
+  all.push_back(tube_along({{0.1, -0.12, high}, {0.05, 0.12, high}}));
+  const std::vector<double> found = radii();
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found.front(), kRadius, 0.0001);
+}
+
 /// Floor and two walls of a bin that stands elsewhere than it is said to.
 TEST(BinPose, IsRefinedByFloorAndWalls) {
   ModelingInput input;

@@ -137,9 +137,9 @@ OutlineEvidence outline_along(std::span<const Vec3> nodes, double radius, const 
   OutlineEvidence mean;
   const double places = visit_along(nodes, radius, [&](const Vec3& center, const Vec3& direction) {
     const OutlineEvidence outline = occlusion.outline(center, direction);
-    mean.edge += outline.edge, mean.flat += outline.flat;
+    mean.edge += outline.edge, mean.level += outline.level, mean.flat += outline.flat;
   });
-  mean.edge /= std::max(places, 1.0), mean.flat /= std::max(places, 1.0);
+  for (double* part : {&mean.edge, &mean.level, &mean.flat}) *part /= std::max(places, 1.0);
   return mean;
 }
 
@@ -172,6 +172,11 @@ bool has_other_radius(const PieceEvidence& evidence) {
 bool goes_on_beside(const OutlineEvidence& outline) {
   constexpr double kChance = 0.1;  // of flanks that noise puts in front
   return outline.flat > std::max(outline.edge, kChance);
+}
+
+bool are_sunk(const OutlineEvidence& outline) {
+  constexpr double kMost = 1.0 / 3.0;  // of tubes' places
+  return outline.level > std::max(outline.edge, kMost);
 }
 
 bool is_tube(const PieceEvidence& evidence, double radius, double noise) {

@@ -33,6 +33,10 @@ bool has_other_radius(const PieceEvidence& evidence);
 /// does. So does a tube in a close row that is seen obliquely.
 bool goes_on_beside(const OutlineEvidence& outline);
 
+/// Whether the surroundings go on at the height of their axes beside all of a radius' pieces, as beside ribs, beads and rounded edges.
+/// Of tubes, those along walls or other tubes alone look so, up to a quarter of their places.
+bool are_sunk(const OutlineEvidence& outline);
+
 /// Whether a tube explains the evidence better than any flat strip or chance: curved like a tube of this radius, as far
 /// as the points can tell, with points on its surface and no sides that the scanner saw through.
 bool is_tube(const PieceEvidence& evidence, double radius, double noise);

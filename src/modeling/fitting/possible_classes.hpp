@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "modeling/fitting/piece_evidence.hpp"
 #include "modeling/fitting/tube_classes.hpp"
 
 namespace tubebin::modeling {
@@ -19,9 +20,10 @@ struct UnsurePiece {
 struct PossibleClass {
   TubeClass sure;
   std::vector<UnsurePiece> unsure;
-  double evidence = 0.0;     ///< nats, of its long pieces
-  bool has_ground = false;   ///< that is rough
-  double typical_off = 0.0;  ///< the median of their curvatures' errors, in units of 1 / radius
+  double evidence = 0.0;         ///< nats, of its long pieces
+  bool has_ground = false;       ///< that is rough
+  double typical_off = 0.0;      ///< the median of their curvatures' errors, in units of 1 / radius
+  OutlineEvidence outline = {};  ///< edge and level, the mean along all of them
 };
 
 /// Whether the piece, whose curvature is `off` (in units of 1 / radius), fits hardly better than an unsure piece of an earlier

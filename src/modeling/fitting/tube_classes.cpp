@@ -83,10 +83,12 @@ class ClassFinder {
       PossibleClass found = refined_class(seen, tried);
       is_rough_ = is_rough_ || found.has_ground || (found.sure.radius <= 0.0 && much_is_left(seen));
       tried.push_back(found.sure.radius > 0.0 ? found.sure.radius : seen);
-      set_aside(standing_);
+      set_aside(solids_);
       if (is_believed(found)) {
         set_aside(found.sure.pieces);
-        if (is_wire_mesh(found.sure.pieces)) std::ranges::move(found.sure.pieces, std::back_inserter(wires_));
+        if (!background_is_known_ && are_sunk(found.outline))
+          std::ranges::move(found.sure.pieces, std::back_inserter(solids_));
+        else if (is_wire_mesh(found.sure.pieces)) std::ranges::move(found.sure.pieces, std::back_inserter(wires_));
         else possible_.push_back(std::move(found));
       } else if (found.evidence > weak.evidence && found.unsure.size() < found.sure.pieces.size()) {
         weak = std::move(found);
@@ -236,6 +238,7 @@ class ClassFinder {
     std::vector<TubePiece> upright;
     std::vector<ExaminedPiece> tubes = tubes_of(pieces, sample, radius, has_ground);
     const std::vector<Vec3> ends = ends_of_leaning(tubes);
+    found.outline = mean_outline(tubes);
     for (auto& [piece, evidence] : tubes) {
       // Of two normal errors, the plane's is that many standard deviations.
       const double deviations = evidence.curvature / evidence.curvature_error;
@@ -244,7 +247,7 @@ class ClassFinder {
       const double off = std::abs(evidence.curvature - 1.0);
       const bool has_radius = off <= kSureOff + 2.0 * evidence.curvature_error;
       if (!all_is_tube() && stands_upright(piece, up_) && !goes_on(piece, ends)) {
-        if (!is_unsure) (has_radius ? upright : standing_).push_back(std::move(piece));
+        if (!is_unsure) (has_radius ? upright : solids_).push_back(std::move(piece));
         continue;
       }
       information += 1.0 / (evidence.curvature_error * evidence.curvature_error);
@@ -257,7 +260,7 @@ class ClassFinder {
       else found.sure.pieces.push_back(std::move(piece));
     }
     // A bottle or a column has a radius of its own: what stands among tubes of its radius is one of them.
-    std::vector<TubePiece>& kept_as = radii_are_told_ || is_believed(found) ? found.sure.pieces : standing_;
+    std::vector<TubePiece>& kept_as = radii_are_told_ || is_believed(found) ? found.sure.pieces : solids_;
     std::ranges::move(upright, std::back_inserter(kept_as));
     if (information > 0.0) found.sure.radius_error = radius / std::sqrt(information);
     if (!offs.empty()) found.typical_off = median(offs);
@@ -272,10 +275,23 @@ class ClassFinder {
     return ends;
   }
 
+  /// Beside all of the pieces.
+  static OutlineEvidence mean_outline(const std::vector<ExaminedPiece>& tubes) {
+    OutlineEvidence mean;
+    double length = 0.0;
+    for (const auto& [piece, evidence] : tubes) {
+      length += piece.length();
+      mean.edge += piece.length() * evidence.outline.edge;
+      mean.level += piece.length() * evidence.outline.level;
+    }
+    for (double* part : {&mean.edge, &mean.level}) *part /= std::max(length, 1e-9);
+    return mean;
+  }
+
   /// A streak of a bottle's side may look like a tube of a smaller radius.
   void drop_streaks(TubeClass& found) const {
     std::erase_if(found.pieces, [&](const TubePiece& piece) {
-      return std::ranges::any_of(standing_, [&](const TubePiece& solid) { return is_inside(piece, solid); });
+      return std::ranges::any_of(solids_, [&](const TubePiece& solid) { return is_inside(piece, solid); });
     });
   }
 
@@ -297,7 +313,8 @@ class ClassFinder {
   std::optional<FilteredCloud> rest_;
   std::optional<SurfaceNormals> normals_;  ///< of what is left
   std::vector<RoundPlace> round_;
-  std::vector<TubePiece> standing_, wires_;
+  std::vector<TubePiece> solids_;  ///< that are no tubes: what stands, and what is sunk in its surroundings
+  std::vector<TubePiece> wires_;
   std::vector<PossibleClass> possible_;  ///< of the radii so far
 };
 

@@ -99,7 +99,9 @@ OutlineEvidence OcclusionTest::outline(const Vec3& center, const Vec3& direction
   // From 0.6 radii below the axis to 0.3 above: another tube that touches this one's side is higher or lower.
   constexpr double kLow = -0.15, kTolerance = 0.45;
   const Place beside[] = {{-kBeside, kLow}, {kBeside, kLow}};
-  return {.edge = evidence_at(center, direction, beside, kTolerance).empty,
+  const StretchEvidence past = evidence_at(center, direction, beside, kTolerance);
+  return {.edge = past.empty,
+          .level = past.surface,
           .flat = evidence_at(center, direction, flanks, (most - least) / 2.0).surface};
 }
 

@@ -21,8 +21,9 @@ struct StretchEvidence {
 
 /// How the scan goes on at the two sides of a tube, each as a part of 1.
 struct OutlineEvidence {
-  double edge = 0.0;  ///< just beside the tube, seen past it to what lies over half a radius lower than its axis
-  double flat = 0.0;  ///< at its flank, a surface up to a radius in front of it, as of what is less curved
+  double edge = 0.0;   ///< just beside the tube, seen past it to what lies over half a radius lower than its axis
+  double level = 0.0;  ///< just beside the tube, a surface not lower than that, as about a rib that is part of a floor
+  double flat = 0.0;   ///< at its flank, a surface up to a radius in front of it, as of what is less curved
 };
 
 class OcclusionTest {
