@@ -14,186 +14,15 @@ import sys
 import tempfile
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
-IMAGES = ROOT / "docs/images"
+from picture_data import coordinates, normals_of, organized_points, read_json, ROOT, SCENE, scene_colors, truth_of_labels, Work
+from picture_drawing import beside, fit, GREY, IMAGES, pale, save, TopView, WHITE
+
 sys.path.insert(0, str(ROOT / "examples/python"))
 sys.dont_write_bytecode = True
 from clouds import read_pcd  # noqa: E402
 
-WHITE, GREY, INK = (255, 255, 255), (150, 150, 150), (40, 40, 40)
-SCENE = "A10/001"  # of the tutorial's data set
-
-
-class Work:
-    """Runs the programs in a folder, each command once."""
-
-    def __init__(self, bin_dir, folder):
-        self.bin_dir, self.folder = pathlib.Path(bin_dir).resolve(), pathlib.Path(folder)
-
-    def run(self, output, program, *arguments):
-        if not (self.folder / output).exists():
-            subprocess.run([self.bin_dir / program, *arguments], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
-        return self.folder / output
-
-    def dataset(self):
-        return self.run("dataset", "generate_dataset", ROOT / "config/set_a.yaml", "--output", "dataset", "--tubes",
-                        "1,5,10", "--cases", "2", "--preview", "--quiet")
-
-    def model(self):
-        """Folder of the tutorial's model of SCENE."""
-        self.dataset()
-        return self.run("one", "model_tubes", f"dataset/{SCENE}/cloud.pcd", "--output", "one")
-
-    def results(self):
-        self.dataset()
-        return self.run("results", "model_tubes", "dataset", "--output", "results", "--ratios", "0.3,1.0", "--method",
-                        "both", "--quiet")
-
-
-# ---- drawing ----
-
-def font(size):
-    for name in ("DejaVuSans.ttf", "LiberationSans-Regular.ttf"):
-        try:
-            return ImageFont.truetype(name, size)
-        except OSError:
-            pass
-    return ImageFont.load_default()
-
-
-def save(picture, name, colors=128):
-    """As a PNG, of few colours where these keep it small."""
-    path = IMAGES / name
-    picture = picture.convert("RGB")
-    (picture.quantize(colors, dither=Image.Dither.NONE) if colors else picture).save(path, optimize=True)
-    print(f"{path.relative_to(ROOT)}: {path.stat().st_size // 1000} kB")
-
-
-def beside(pictures, titles=None, columns=None, gap=10):
-    """Pictures of one size in rows, each under its title."""
-    columns = columns or len(pictures)
-    rows = -(-len(pictures) // columns)
-    width, height = pictures[0].size
-    head = 24 if titles else 0
-    sheet = Image.new("RGB", (columns * (width + gap) - gap, rows * (height + head + gap) - gap), WHITE)
-    draw = ImageDraw.Draw(sheet)
-    for i, picture in enumerate(pictures):
-        x, y = i % columns * (width + gap), i // columns * (height + head + gap)
-        sheet.paste(picture, (x, y + head))
-        if titles:
-            draw.text((x + 2, y + 3), titles[i], INK, font(15))
-    return sheet
-
-
-def surface(start, end, radius, step=0.0004):
-    """Points (metres) on a cylinder's side and on the joint sphere at its end, with their normals."""
-    axis = end - start
-    length = np.linalg.norm(axis)
-    axis = axis / length
-    side = np.cross(axis, [0.0, 0.0, 1.0] if abs(axis[2]) < 0.9 else [1.0, 0.0, 0.0])
-    side /= np.linalg.norm(side)
-    other = np.cross(axis, side)
-    angle = np.arange(0.0, 2 * np.pi, step / radius)
-    ring = np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * other
-    along = np.arange(0.0, length, step)
-    points = (start + along[:, None] * axis)[:, None] + radius * ring[None]
-    return points.reshape(-1, 3), np.broadcast_to(ring, points.shape).reshape(-1, 3)
-
-
-def ball(center, radius, step=0.0004):
-    count = int(4 * np.pi * (radius / step) ** 2)
-    i = np.arange(count) + 0.5  # Fibonacci's spiral
-    z, angle = 1 - 2 * i / count, np.pi * (1 + 5**0.5) * i
-    normals = np.stack([np.cos(angle) * np.sqrt(1 - z * z), np.sin(angle) * np.sqrt(1 - z * z), z], axis=1)
-    return center + radius * normals, normals
-
-
-class TopView:
-    """A picture of a part of the bin, seen straight from above; what is higher covers what is lower."""
-
-    def __init__(self, x, y, width):
-        self.x, self.y = x, y  # ranges, metres
-        self.scale = width / (x[1] - x[0])
-        self.size = (width, round((y[1] - y[0]) * self.scale))
-        self.image = np.full((self.size[1], self.size[0], 3), 255, np.uint8)
-        self.height = np.full((self.size[1], self.size[0]), -np.inf)
-
-    def pixels(self, points):
-        return np.stack([(points[:, 0] - self.x[0]) * self.scale, (self.y[1] - points[:, 1]) * self.scale], axis=1)
-
-    def splat(self, points, colors, size=1):
-        order = np.argsort(points[:, 2], kind="stable")
-        points, colors = points[order], np.broadcast_to(colors, (len(points), 3))[order]
-        column, row = np.floor(self.pixels(points)).astype(int).T
-        for dx in range(size):
-            for dy in range(size):
-                u, v = column + dx - size // 2, row + dy - size // 2
-                inside = (u >= 0) & (v >= 0) & (u < self.size[0]) & (v < self.size[1])
-                u, v, z, c = u[inside], v[inside], points[inside, 2], colors[inside]
-                seen = z >= self.height[v, u]
-                self.image[v[seen], u[seen]] = c[seen]
-                self.height[v[seen], u[seen]] = z[seen]
-
-    def solid(self, points, normals, color):
-        light = 0.45 + 0.55 * np.clip(normals @ np.array([-0.35, 0.35, 0.87]), 0, 1)
-        self.splat(points, np.clip(np.outer(light, color), 0, 255).astype(np.uint8), 2)
-
-    def cylinder(self, start, end, radius, color, joint=True):
-        start, end = np.array(start), np.array(end)
-        self.solid(*surface(start, end, radius), color)
-        if joint:
-            self.solid(*ball(start, radius), color)
-
-    def picture(self):
-        return Image.fromarray(self.image)
-
-
-# ---- what the programs made ----
-
-def coordinates(cloud):
-    return np.stack([cloud["x"], cloud["y"], cloud["z"]], axis=1).astype(float)
-
-
-def truth_of_labels(work, folder):
-    """By evaluate's matching: the true label of each label that was found."""
-    table = subprocess.run([work.bin_dir / "evaluate", "--filtered", folder / "filtered.pcd", "--labeled",
-                            folder / "labeled.pcd", "--format", "csv"], check=True, capture_output=True, text=True)
-    rows = [line.split(",") for line in table.stdout.splitlines()]
-    return {int(row[2]): int(row[0]) for row in rows if len(row) > 3 and row[0].isdigit() and row[2].isdigit()}
-
-
-def read_json(path):
-    return json.loads(path.read_text())
-
-
-def scene_colors(scene):
-    return {tube["label"]: tuple(tube["color"]) for tube in scene["tubes"]}
-
-
-def pale(color, share=0.6):
-    return tuple(round(share * 255 + (1 - share) * c) for c in color)
-
-
-def organized_points(cloud, columns):
-    return coordinates(cloud).reshape(-1, columns, 3)
-
-
-def normals_of(grid):
-    """Normals of an organized cloud (rows x columns x 3) by planes through 5 x 5 pixels, towards the scanner above."""
-    padded = np.pad(grid, ((2, 2), (2, 2), (0, 0)), constant_values=np.nan)
-    window = np.lib.stride_tricks.sliding_window_view(padded, (5, 5), axis=(0, 1)).reshape(*grid.shape, 25)
-    near = np.linalg.norm(window - grid[..., None], axis=2) < 0.006
-    window = np.where(near[:, :, None], window, 0.0)
-    count = np.maximum(near.sum(axis=2), 1)[..., None]
-    offset = np.where(near[:, :, None], window - (window.sum(axis=3) / count)[..., None], 0.0)
-    covariance = np.einsum("rcip,rcjp->rcij", offset, offset)
-    normal = np.linalg.eigh(covariance)[1][..., 0]
-    return normal * np.where(normal[..., 2:] < 0, -1, 1), near.sum(axis=2) >= 12
-
-
-# ---- the pictures ----
 
 def draw_tutorial_scene(work):
     folder = work.dataset() / SCENE
@@ -257,17 +86,6 @@ def draw_full_bins(work):
                           "--cases", "1", "--preview", "--quiet")
         pictures.append(fit(Image.open(folder / scene / "preview.png").convert("RGB"), (360, 270)))
     save(beside(pictures), "full_bins.png", colors=None)
-
-
-def fit(picture, size):
-    """The picture, as large as fits, in the middle of a white one of the size."""
-    picture = picture.copy()
-    box = Image.fromarray((np.array(picture).min(axis=2) < 222).astype(np.uint8)).getbbox()  # what is not pale
-    picture = picture.crop(box) if box else picture
-    picture.thumbnail(size, Image.Resampling.LANCZOS)
-    sheet = Image.new("RGB", size, WHITE)
-    sheet.paste(picture, ((size[0] - picture.width) // 2, (size[1] - picture.height) // 2))
-    return sheet
 
 
 def screenshot(work, page, size):
