@@ -213,6 +213,19 @@ TEST(Pipeline, KeepsTheStatedShareOfThePoints) {
   EXPECT_GE(micro_recall_of(some, cloud), 0.99);
 }
 
+/// Bends every few radii leave short pieces alone, of some hundred points, whose evidence would be an edge's without a known bin.
+TEST(Pipeline, FindsOneBentTubeOfATenthOfItsPoints) {
+  for (const double bend : {0.03, 0.04}) {
+    std::vector<Vec3> nodes;
+    for (int k = 0; k < 7; ++k) nodes.emplace_back(0.05 * k - 0.15, k % 2 ? bend : 0.0, kR);
+    const scene::Scene scene = scene_of({tube_along(nodes)});
+    const cloud::Cloud cloud = scan::scan(scene).cloud;
+    ModelingOptions options;
+    options.filtering.ratio = 0.1;
+    EXPECT_GE(micro_recall_of(model_tubes(input_of(cloud, scene.bin), options), cloud), 0.95) << bend;
+  }
+}
+
 TEST(Pipeline, TheSeedGivesTheSameResultAgain) {
   const scene::Scene scene = one_over_three();
   const cloud::Cloud cloud = scan::scan(scene).cloud;

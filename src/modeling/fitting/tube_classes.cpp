@@ -90,11 +90,11 @@ class ClassFinder {
           std::ranges::move(found.sure.pieces, std::back_inserter(solids_));
         else if (is_wire_mesh(found.sure.pieces)) std::ranges::move(found.sure.pieces, std::back_inserter(wires_));
         else possible_.push_back(std::move(found));
-      } else if (found.evidence > weak.evidence && found.unsure.size() < found.sure.pieces.size()) {
+      } else if (weak_evidence(found) > weak_evidence(weak)) {
         weak = std::move(found);
       }
     }
-    if (possible_.empty() && weak.evidence > 0.0) possible_.push_back(std::move(weak));
+    if (possible_.empty() && weak_evidence(weak) > 0.0) possible_.push_back(std::move(weak));
     std::vector<TubeClass> classes = settled(possible_, cloud_.spacing);
     for (TubeClass& found : classes) drop_streaks(found);
     std::erase_if(classes, [](const TubeClass& found) { return found.pieces.empty(); });
@@ -170,6 +170,15 @@ class ClassFinder {
       return pieces_of(std::move(found), guess);
     }
     return {};
+  }
+
+  /// Of a class that is not believed, nats. Edges and rims look round in bits; where the background is known, all that is round counts.
+  double weak_evidence(const PossibleClass& found) const {
+    if (!background_is_known_) return found.unsure.size() < found.sure.pieces.size() ? found.evidence : 0.0;
+    double evidence = 0.0;
+    for (const TubePiece& piece : found.sure.pieces) evidence += piece.evidence;
+    for (const UnsurePiece& unsure : found.unsure) evidence += unsure.piece.evidence;
+    return evidence;
   }
 
   bool is_believed(const PossibleClass& found) const {
