@@ -65,6 +65,18 @@ TEST(MostOpenViewpoint, LooksIntoABoxWhicheverWayItOpens) {
   }
 }
 
+TEST(MostOpenViewpoint, IsFarAwayWhereRaysWereParallel) {
+  // Squares at many heights, seen from straight above: from a near place or aside, the higher ones hide parts of the lower.
+  std::vector<Vec3> points;
+  Random random(7);
+  for (int column = 0; column < 7; ++column)
+    for (int row = 0; row < 7; ++row)
+      add_rectangle({0.1 * column, 0.1 * row, random.uniform(0.0, 0.2)}, {0.1, 0, 0}, {0, 0.1, 0}, 400, points);
+  const Vec3 viewpoint = most_open_viewpoint(points, -Vec3::UnitZ());
+  EXPECT_GT(viewpoint.norm(), 20.0);
+  EXPECT_GT(viewpoint.normalized().z(), std::cos(radians(5.0)));
+}
+
 TEST(MostOpenViewpoint, IsNotBehind) {
   const std::vector<Vec3> points = open_box();
   for (const Vec3& behind : {Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(-1, 0, 0.5)})

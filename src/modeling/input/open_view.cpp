@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "core/golden_spiral.hpp"
@@ -39,6 +40,19 @@ ViewProjection::Images images_from(const Vec3& viewpoint, std::span<const Vec3> 
   return images;
 }
 
+/// Leaves at most `count` of the viewpoints: those from which the fewest points are hidden, the best first.
+void keep_most_open(std::vector<Vec3>& viewpoints, std::span<const Vec3> points, double widths, std::size_t count) {
+  const std::vector<double> hidden =
+      map_in_parallel(viewpoints.size(), [&](std::size_t k) { return hidden_share(points, viewpoints[k], widths); });
+  std::vector<std::size_t> order(viewpoints.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return hidden[k]; });
+  order.resize(std::min(order.size(), count));
+  std::vector<Vec3> kept;
+  for (const std::size_t k : order) kept.push_back(viewpoints[k]);
+  viewpoints = std::move(kept);
+}
+
 }  // namespace
 
 double hidden_share(std::span<const Vec3> points, const Vec3& viewpoint, double widths) {
@@ -73,6 +87,8 @@ Vec3 most_open_viewpoint(std::span<const Vec3> points, const Vec3& behind) {
   // Four degrees apart: into a full bin, tubes hide each other from a little aside.
   constexpr std::size_t kDirections = 512;
   constexpr double kWidths = 4.0;  // a surface that leans is not as deep
+  // What hides little, such as tubes on a table, shows among many points only.
+  constexpr std::size_t kCoarse = 8000, kShortlist = 64;
   const Vec3 middle = middle_of(points);
   double squares = 0.0;
   for (const Vec3& point : points) squares += (point - middle).squaredNorm();
@@ -80,11 +96,13 @@ Vec3 most_open_viewpoint(std::span<const Vec3> points, const Vec3& behind) {
   std::vector<Vec3> viewpoints;
   for (const Vec3& direction : golden_spiral(kDirections, -1.0))
     if (behind.isZero() || direction.dot(behind) < 0.0)
-      for (const double distance : {2.5, 4.0, 8.0})  // of whole cells, bins, and parts of them
+      for (const double distance : {2.5, 4.0, 8.0, 100.0})  // of whole cells, bins, parts of them; by parallel rays
         viewpoints.push_back(middle + distance * spread * direction);
-  const std::vector<double> hidden =
-      map_in_parallel(viewpoints.size(), [&](std::size_t k) { return hidden_share(points, viewpoints[k], kWidths); });
-  return viewpoints[static_cast<std::size_t>(std::ranges::min_element(hidden) - hidden.begin())];
+  std::vector<Vec3> coarse;
+  for (std::size_t i = 0; i < points.size(); i += points.size() / kCoarse + 1) coarse.push_back(points[i]);
+  keep_most_open(viewpoints, coarse, kWidths, kShortlist);
+  keep_most_open(viewpoints, points, kWidths, 1);
+  return viewpoints.front();
 }
 
 }  // namespace tubebin::modeling

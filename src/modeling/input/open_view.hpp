@@ -11,8 +11,8 @@ namespace tubebin::modeling {
 /// four points.
 double hidden_share(std::span<const Vec3> points, const Vec3& viewpoint, double widths);
 
-/// The place from which the fewest of the points lie behind others, of places around them up to eight times as far away as they
-/// spread. `behind`: a direction from their middle, on whose side no place is taken; zero: any is.
+/// The place from which the fewest of the points lie behind others, of places around them: near, and so far away that rays are
+/// all but parallel. `behind`: a direction from their middle, on whose side no place is taken; zero: any is.
 Vec3 most_open_viewpoint(std::span<const Vec3> points, const Vec3& behind);
 
 }  // namespace tubebin::modeling

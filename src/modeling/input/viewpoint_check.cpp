@@ -24,7 +24,7 @@ bool is_amid(const std::vector<Vec3>& points, const Vec3& place) {
 }
 
 /// Few enough for a search that takes a moment.
-std::vector<Vec3> coarse_sample(const ModelingInput& input) { return sample_of(input.points, 8000); }
+std::vector<Vec3> coarse_sample(const ModelingInput& input) { return sample_of(input.points, 60000); }
 
 }  // namespace
 
