@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "modeling/built_scene.hpp"
 #include "modeling/fitting/piece_evidence.hpp"
@@ -153,6 +154,24 @@ TEST(Surroundings, PointsThatLieAloneMakeTheOthersSeemNoFartherApart) {
   const ModelingResult result = model();
   EXPECT_LT(result.spacing, 1.2 * spacing);
   EXPECT_EQ(result.tubes.size(), 2u);
+}
+
+TEST(Surroundings, APlaceThatManyPixelsShareWasNotMeasured) {
+  const cloud::Cloud seen = scan::scan(scene_of({tube_along({{-0.15, -0.05, kRadius}, {0.15, 0.05, kRadius}})})).cloud;
+  const auto labels_with = [&](const cloud::Point& unmeasured) {
+    std::vector<cloud::Point> points = seen.points;
+    for (std::size_t i = 0; i < points.size(); i += 8) points[i] = unmeasured;
+    ModelingOptions options = known_radius();
+    options.label_all = true;
+    const ModelingResult result =
+        model_tubes({.points = points, .world_from_sensor = seen.world_from_sensor, .bin = {}}, options);
+    EXPECT_EQ(result.tubes.size(), 1u);
+    return result.all_labels;
+  };
+  const auto expected = labels_with(cloud::Point::Constant(std::numeric_limits<float>::quiet_NaN()));
+  EXPECT_EQ(labels_with(cloud::Point::Zero()), expected);
+  EXPECT_EQ(labels_with({0.0f, 0.0f, -1000.0f}), expected);
+  EXPECT_EQ(labels_with({0.1f, 0.02f, 0.3f}), expected);
 }
 
 /// Round ribs half as thick as the tubes, of which the floor covers the lower part.

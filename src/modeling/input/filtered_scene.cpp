@@ -12,6 +12,7 @@
 #include "modeling/input/bin_pose.hpp"
 #include "modeling/input/bin_rim.hpp"
 #include "modeling/input/hanging_tubes.hpp"
+#include "modeling/input/point_sample.hpp"
 #include "modeling/input/scan_smoothing.hpp"
 #include "modeling/input/viewpoint_check.hpp"
 #include "modeling/scene_found.hpp"
@@ -20,14 +21,30 @@
 namespace tubebin::modeling {
 namespace {
 
-/// Some scanners write a pixel without a measurement as the point (0, 0, 0). The points with those not finite; none where
-/// at most one lies there.
-std::vector<cloud::Point> without_zero_points(std::span<const cloud::Point> points) {
-  const auto is_zero = [](const cloud::Point& point) { return point.isZero(0.0f); };
-  if (std::ranges::count_if(points, is_zero) <= 1) return {};
+/// Places that more than a hundredth of the points share, to the last bit.
+std::vector<cloud::Point> shared_places(std::span<const cloud::Point> points) {
+  constexpr std::size_t kSample = 2000, kShared = kSample / 100;
+  std::vector<Vec3> sample = sample_of(points, kSample);
+  std::ranges::sort(sample, [](const Vec3& a, const Vec3& b) { return std::ranges::lexicographical_compare(a, b); });
+  std::vector<cloud::Point> places;
+  for (auto first = sample.begin(); first != sample.end();) {
+    const auto last = std::ranges::find_if(first, sample.end(), [&](const Vec3& point) { return point != *first; });
+    if (static_cast<std::size_t>(last - first) > kShared) places.push_back(first->cast<float>());
+    first = last;
+  }
+  return places;
+}
+
+/// Some scanners write all pixels without a measurement as one point, mostly (0, 0, 0). The points with those not finite; none
+/// where no place is shared.
+std::vector<cloud::Point> without_shared_places(std::span<const cloud::Point> points) {
+  std::vector<cloud::Point> places = shared_places(points);
+  if (std::ranges::count(points, cloud::Point(cloud::Point::Zero())) > 1) places.push_back(cloud::Point::Zero());
+  if (places.empty()) return {};
   std::vector<cloud::Point> measured(points.begin(), points.end());
-  std::ranges::replace_if(measured, is_zero,
-                          cloud::Point(cloud::Point::Constant(std::numeric_limits<float>::quiet_NaN())));
+  std::ranges::replace_if(
+      measured, [&](const cloud::Point& point) { return std::ranges::find(places, point) != places.end(); },
+      cloud::Point(cloud::Point::Constant(std::numeric_limits<float>::quiet_NaN())));
   return measured;
 }
 
@@ -151,7 +168,7 @@ FilteredScene filter_from_viewpoint(ModelingInput input, const ModelingOptions& 
 
 FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& options) {
   ModelingInput input = told;
-  std::vector<cloud::Point> measured = without_zero_points(told.points);
+  std::vector<cloud::Point> measured = without_shared_places(told.points);
   if (!measured.empty()) input.points = measured;
   ViewpointCheck viewpoint = check_viewpoint(input);
   FilteredScene scene = filter_from_viewpoint(input, options);
