@@ -150,15 +150,32 @@ void expect_bin(const std::optional<BinFound>& found, const scene::Bin& bin, dou
   EXPECT_GT(std::abs(found->world_from_bin.linear()(0, 0)), 0.9999);
 }
 
-TEST(Cell, FindsTheBinWithTheTubesWhereItHidesAWall) {
+/// The cell seen so obliquely that the bin hides one of its walls.
+scene::Scene with_a_hidden_wall() {
   scene::Scene scene = one_over_three_in_a_cell();
   scene.bin.draft_deg = 3.0;
   scene.surroundings->bins = {{.position = {0.0, 0.65, 0.0}, .yaw_deg = 8.0}};
   scene.scanner.position = {0.0, -0.9, 1.4};
   scene.scanner.rotation_deg = {33.0, 0.0, 0.0};
+  return scene;
+}
+
+TEST(Cell, FindsTheBinWithTheTubesWhereItHidesAWall) {
+  const scene::Scene scene = with_a_hidden_wall();
   const cloud::Cloud cloud = scan::scan(scene).cloud;
   ModelingInput input = input_of(cloud, scene.bin);
   input.bin.reset();
+  expect_bin(model_tubes(input, known_radius()).found.bin, scene.bin, 0.004);
+}
+
+TEST(Cell, AHiddenWallIsNoneThatIsAsFarAwayAsWallsAreLookedFor) {
+  const scene::Scene scene = with_a_hidden_wall();
+  cloud::Cloud cloud = scan::scan(scene).cloud;
+  for (double y = -2.9; y < -2.8; y += 0.0005)  // 3 m from the wall across, as high as walls are
+    for (double x = -0.25; x < 0.25; x += 0.001) cloud.points.push_back(Vec3(x, y, scene.bin.height).cast<float>());
+  ModelingInput input = input_of(cloud, scene.bin);
+  input.bin.reset();
+  input.width = 0;
   expect_bin(model_tubes(input, known_radius()).found.bin, scene.bin, 0.004);
 }
 

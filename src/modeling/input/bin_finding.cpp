@@ -176,7 +176,7 @@ class BinsOnFloor {
     const Vec3 along = up_.cross(outward);
     const double half = 0.9 * half_extent(opposite, along);
     const auto columns = static_cast<std::size_t>(2.0 * half / along_step) + 1;
-    const auto rows = static_cast<std::size_t>(kFarthest / step);
+    const auto rows = static_cast<std::size_t>(kFarthest / step) + 1;
     std::vector<bool> is_seen(rows * columns, false);
     for (std::size_t k = 0; k < heights_.size(); ++k) {
       if (!(std::abs(heights_[k] - top) < kOverhang / 4.0)) continue;
