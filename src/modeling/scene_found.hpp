@@ -13,7 +13,7 @@ std::string place_text(const Vec3& p);
 void describe_scene(const Background& background, const ViewProjection& projection, const Vec3& told_up,
                     SceneFound& found);
 
-/// Says in `found.doubts` what of the result looks wrong.
+/// Says in `found.doubts` what of the result looks wrong. One thick tube alone does, unless `radii_are_told`.
 void add_doubts(ModelingResult& result, bool radii_are_told);
 
 }  // namespace tubebin::modeling

@@ -34,6 +34,15 @@ TEST(RadiusEstimation, PlacesOnATubeCurveAsItDoes) {
   }
 }
 
+TEST(RadiusEstimation, PlacesWherePointsLieFarCloserThanElsewhereCurveAsTheTubeDoes) {
+  FilteredCloud cloud = upper_half_of({{-0.1, 0, 0}, {0.1, 0, 0}}, 0.03);
+  cloud.spacing *= 4.0;
+  const CurvedPlaces places = curved_places_of(cloud);
+  const std::vector<double> radii = sorted_radii(places);
+  ASSERT_GT(radii.size(), 0.9 * static_cast<double>(places.looked_at));
+  EXPECT_NEAR(radii[radii.size() / 2], 0.03, 0.0015);
+}
+
 /// Glossy and dark tubes show a narrow strip. Normals at the points themselves would have a third of its curvature: all of its
 /// points have nearly the same neighbours.
 TEST(RadiusEstimation, PlacesOnANarrowStripCurveAsTheTubeDoes) {

@@ -16,11 +16,20 @@ struct Curvatures {
   Vec3 axis = Vec3::Zero();
 };
 
+/// At most so many of them, spread evenly.
+std::vector<std::uint32_t> some_of(const std::vector<std::uint32_t>& indices, std::size_t most) {
+  std::vector<std::uint32_t> some;
+  for (std::size_t k = 0; k < indices.size(); k += indices.size() / most + 1) some.push_back(indices[k]);
+  return some;
+}
+
 /// The symmetric 2 x 2 map from tangent offsets to changes of the normal `n`, by least squares over the point's neighbours within
-/// four spacings, about fifty of them. Zeros where these are too few to tell.
+/// four spacings, about fifty of them; where points lie far closer together than elsewhere, of some. Zeros where these are too
+/// few to tell.
 Curvatures curvatures_at(std::uint32_t point, const cloud::Point& n, const cloud::Point& middle,
                          const FilteredCloud& cloud, const SurfaceNormals& surface) {
-  const std::vector<std::uint32_t> neighbors = surface.around(point, 4.0 * cloud.spacing);
+  constexpr std::size_t kMost = 200;
+  const std::vector<std::uint32_t> neighbors = some_of(surface.around(point, 4.0 * cloud.spacing), kMost);
   const auto [normals, middles] = surface.planes_at(neighbors);
   const cloud::Point u = n.unitOrthogonal();
   const cloud::Point v = n.cross(u);
