@@ -176,19 +176,18 @@ class BinsOnFloor {
     const Vec3 along = up_.cross(outward);
     const double half = 0.9 * half_extent(opposite, along);
     const auto columns = static_cast<std::size_t>(2.0 * half / along_step) + 1;
-    const auto rows = static_cast<std::size_t>(kFarthest / step) + 1;
-    std::vector<bool> is_seen(rows * columns, false);
+    std::vector<std::vector<bool>> is_seen;  // by steps from the place
     for (std::size_t k = 0; k < heights_.size(); ++k) {
       if (!(std::abs(heights_[k] - top) < kOverhang / 4.0)) continue;
       const Vec3 p = points_[k * dense_stride()].cast<double>();
       const double distance = (p - place).dot(outward), aside = (p - opposite.center).dot(along) + half;
       if (distance < 0.0 || distance >= kFarthest || aside < 0.0 || aside >= 2.0 * half) continue;
-      is_seen[static_cast<std::size_t>(distance / step) * columns + static_cast<std::size_t>(aside / along_step)] =
-          true;
+      const auto row = static_cast<std::size_t>(distance / step);
+      if (row >= is_seen.size()) is_seen.resize(row + 1, std::vector<bool>(columns, false));
+      is_seen[row][static_cast<std::size_t>(aside / along_step)] = true;
     }
-    for (std::size_t row = 0; row < rows; ++row) {
-      const auto first = is_seen.begin() + static_cast<std::ptrdiff_t>(row * columns);
-      const auto count = std::count(first, first + static_cast<std::ptrdiff_t>(columns), true);
+    for (std::size_t row = 0; row < is_seen.size(); ++row) {
+      const auto count = std::ranges::count(is_seen[row], true);
       if (static_cast<double>(count) < kPart * static_cast<double>(columns)) continue;
       // It leans as the wall across from it does.
       const double lean = opposite.plane.normal.dot(up_) / std::abs(opposite.plane.normal.dot(outward));

@@ -24,12 +24,14 @@ std::vector<std::uint32_t> some_of(const std::vector<std::uint32_t>& indices, st
 }
 
 /// The symmetric 2 x 2 map from tangent offsets to changes of the normal `n`, by least squares over the point's neighbours within
-/// four spacings, about fifty of them; where points lie far closer together than elsewhere, of some. Zeros where these are too
-/// few to tell.
+/// four spacings, about fifty of them; where points lie far closer together than elsewhere, of some. Zeros where there are too few to
+/// tell, or so many that it is no surface of points so far apart.
 Curvatures curvatures_at(std::uint32_t point, const cloud::Point& n, const cloud::Point& middle,
                          const FilteredCloud& cloud, const SurfaceNormals& surface) {
-  constexpr std::size_t kMost = 200;
-  const std::vector<std::uint32_t> neighbors = some_of(surface.around(point, 4.0 * cloud.spacing), kMost);
+  constexpr std::size_t kEnough = 200, kMost = 2000;
+  const std::vector<std::uint32_t> all = surface.around(point, 4.0 * cloud.spacing);
+  if (all.size() > kMost) return {};
+  const std::vector<std::uint32_t> neighbors = some_of(all, kEnough);
   const auto [normals, middles] = surface.planes_at(neighbors);
   const cloud::Point u = n.unitOrthogonal();
   const cloud::Point v = n.cross(u);
