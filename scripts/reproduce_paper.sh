@@ -122,7 +122,7 @@ measured, its verdicts computed ([docs/metrics.md](metrics.md) says how).
 - tubebin $("$bin/evaluate" --version | awk '{ print $NF }'); the groups' means with all measures are in
   [reproduction/groups.csv](reproduction/groups.csv).
 
-## What took how long
+## Times
 
 $(time_table)
 
