@@ -98,9 +98,7 @@ Vec3 most_open_viewpoint(std::span<const Vec3> points, const Vec3& behind) {
     if (behind.isZero() || direction.dot(behind) < 0.0)
       for (const double distance : {2.5, 4.0, 8.0, 100.0})  // of whole cells, bins, parts of them; by parallel rays
         viewpoints.push_back(middle + distance * spread * direction);
-  std::vector<Vec3> coarse;
-  for (std::size_t i = 0; i < points.size(); i += points.size() / kCoarse + 1) coarse.push_back(points[i]);
-  keep_most_open(viewpoints, coarse, kWidths, kShortlist);
+  keep_most_open(viewpoints, some_of(points, kCoarse), kWidths, kShortlist);
   keep_most_open(viewpoints, points, kWidths, 1);
   return viewpoints.front();
 }

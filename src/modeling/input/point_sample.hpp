@@ -26,6 +26,14 @@ inline std::vector<Vec3> positions_at(std::span<const cloud::Point> points, std:
   return positions;
 }
 
+/// At most `most` of them, spread evenly.
+template <typename Value>
+std::vector<Value> some_of(std::span<const Value> all, std::size_t most) {
+  std::vector<Value> some;
+  for (std::size_t k = 0; k < all.size(); k += all.size() / most + 1) some.push_back(all[k]);
+  return some;
+}
+
 /// Of at most about `size` points of a scan, spread evenly over it, those that are finite.
 inline std::vector<Vec3> sample_of(std::span<const cloud::Point> points, std::size_t size) {
   std::vector<Vec3> sample;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modeling/input/point_sample.hpp"
 #include "modeling/parallel.hpp"
 #include "modeling/sphere_fit.hpp"
 
@@ -16,13 +17,6 @@ struct Curvatures {
   Vec3 axis = Vec3::Zero();
 };
 
-/// At most so many of them, spread evenly.
-std::vector<std::uint32_t> some_of(const std::vector<std::uint32_t>& indices, std::size_t most) {
-  std::vector<std::uint32_t> some;
-  for (std::size_t k = 0; k < indices.size(); k += indices.size() / most + 1) some.push_back(indices[k]);
-  return some;
-}
-
 /// The symmetric 2 x 2 map from tangent offsets to changes of the normal `n`, by least squares over the point's neighbours within
 /// four spacings, about fifty of them; where points lie far closer together than elsewhere, of some. Zeros where there are too few to
 /// tell, or so many that it is no surface of points so far apart.
@@ -31,7 +25,7 @@ Curvatures curvatures_at(std::uint32_t point, const cloud::Point& n, const cloud
   constexpr std::size_t kEnough = 200, kMost = 2000;
   const std::vector<std::uint32_t> all = surface.around(point, 4.0 * cloud.spacing);
   if (all.size() > kMost) return {};
-  const std::vector<std::uint32_t> neighbors = some_of(all, kEnough);
+  const std::vector<std::uint32_t> neighbors = some_of<std::uint32_t>(all, kEnough);
   const auto [normals, middles] = surface.planes_at(neighbors);
   const cloud::Point u = n.unitOrthogonal();
   const cloud::Point v = n.cross(u);

@@ -23,8 +23,8 @@ bool is_amid(const std::vector<Vec3>& points, const Vec3& place) {
   return directions.norm() < 0.5 * static_cast<double>(points.size());
 }
 
-/// Few enough for a search that takes a moment.
-std::vector<Vec3> coarse_sample(const ModelingInput& input) { return sample_of(input.points, 60000); }
+/// Few enough for a search that takes a moment, and enough to show what hides little.
+std::vector<Vec3> search_sample(const ModelingInput& input) { return sample_of(input.points, 60000); }
 
 }  // namespace
 
@@ -46,7 +46,7 @@ ViewpointCheck check_viewpoint(ModelingInput& input) {
   const double hidden = hidden_share(sample, told, kWidths);
   const bool is_within = is_amid(sample, told);
   if (!is_within && hidden <= kMostHidden) return {.doubt = {}, .is_certain = false};
-  input.world_from_sensor.translation() = most_open_viewpoint(coarse_sample(input), Vec3::Zero());
+  input.world_from_sensor.translation() = most_open_viewpoint(search_sample(input), Vec3::Zero());
   return {.doubt = is_within ? "its points lie all around"
                              : fmt::format("{:.0f} % of its points lie far behind others from there", 100.0 * hidden),
           .is_certain = false};
@@ -62,7 +62,7 @@ bool is_seen_from_behind(const FilteredCloud& cloud, const ViewProjection& proje
 }
 
 void look_from_the_other_side(ModelingInput& input) {
-  const std::vector<Vec3> sample = coarse_sample(input);
+  const std::vector<Vec3> sample = search_sample(input);
   auto viewpoint = input.world_from_sensor.translation();
   viewpoint = most_open_viewpoint(sample, viewpoint - middle_of(sample));
 }
