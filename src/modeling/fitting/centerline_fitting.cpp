@@ -10,6 +10,7 @@
 #include "modeling/fitting/flat_ends.hpp"
 #include "modeling/fitting/piece_parts.hpp"
 #include "modeling/fitting/surface_fitting.hpp"
+#include "modeling/input/point_sample.hpp"
 
 namespace tubebin::modeling {
 namespace {
@@ -51,8 +52,7 @@ struct AxisGuess {
 /// Half a radius about the middle of what agrees is enough to grow from.
 std::vector<Vec3> axis_from_normals(const std::vector<Vote>& votes, double radius) {
   constexpr std::size_t kPairs = 64, kSample = 128;
-  std::vector<Vote> sample;
-  for (std::size_t i = 0; i < votes.size(); i += votes.size() / kSample + 1) sample.push_back(votes[i]);
+  const std::vector<Vote> sample = some_of<Vote>(votes, kSample);
   AxisGuess best{Vec3::UnitX(), votes.front().center, radius / 4.0};
   std::ptrdiff_t most = 0;
   for (std::size_t k = 0; k < kPairs; ++k) {

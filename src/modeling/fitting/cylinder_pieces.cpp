@@ -5,6 +5,7 @@
 
 #include "modeling/fitting/cylinder_ransac.hpp"
 #include "modeling/fitting/surface_fitting.hpp"
+#include "modeling/input/point_sample.hpp"
 #include "tubebin/modeling/region_growing.hpp"
 
 namespace tubebin::modeling {
@@ -61,9 +62,9 @@ Segment take_inliers(const FilteredCloud& cloud, const Segment& points, Cylinder
 void refine(const FilteredCloud& cloud, CylinderAxis& axis, double radius) {
   double low = 0.0, high = 0.0;
   std::vector<SurfacePoint> surface;
-  for (std::size_t k = 0; k < axis.inliers.size(); k += axis.inliers.size() / 500 + 1) {
-    const Vec3 p = cloud.points[axis.inliers[k]].cast<double>();
-    surface.push_back({p, cloud.normals[axis.inliers[k]].cast<double>()});
+  for (const std::uint32_t i : some_of<std::uint32_t>(axis.inliers, 500)) {
+    const Vec3 p = cloud.points[i].cast<double>();
+    surface.push_back({p, cloud.normals[i].cast<double>()});
     const double along = (p - axis.point).dot(axis.direction);
     low = surface.size() == 1 ? along : std::min(low, along);
     high = surface.size() == 1 ? along : std::max(high, along);
