@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 #include "modeling/joining/branch_links.hpp"
 #include "modeling/lid_scene.hpp"
 
@@ -120,6 +124,36 @@ TEST_F(BranchJoining, AKnownLengthDecidesWhatTheLidHides) {
   EXPECT_EQ(tubes_of_length(0.3).size(), 2u);
   ASSERT_EQ(tubes_of_length(0.4).size(), 1u);
   EXPECT_NEAR(tubes_of_length(0.4)[0].length(), 0.4, kRadius);
+}
+
+/// Stem and arm end short of the fork that they lead to, so neither leads to the other's side.
+TEST_F(BranchJoining, AForkUnderTheLidIsWhereTheWaysStraightOnMeet) {
+  const auto arm_at = [&](double angle, double z) {
+    const Vec3 outward(std::cos(angle), std::sin(angle), 0.0), below(0, 0, z);
+    return TubePiece{
+        .nodes = {below + 2.0 * kRadius * outward, below + 0.15 * outward}, .radius = kRadius, .points = {}};
+  };
+  const auto link_to_stem = [&](double z) {
+    const std::vector<TubePiece> pieces = {arm_at(0.0, 0.0), arm_at(radians(110.0), z)};
+    const auto links = find_branch_links(pieces, find_piece_ends(pieces, occlusion(), kLongest), occlusion(), 9.0);
+    const auto link = std::ranges::find_if(links, [](const BranchLink& l) { return l.end == 2 && !l.other_end; });
+    return link == links.end() ? std::nullopt : std::optional(*link);
+  };
+  const std::optional<BranchLink> link = link_to_stem(0.0);
+  ASSERT_TRUE(link);
+  EXPECT_LT(link->place.norm(), 0.5 * kRadius);
+  EXPECT_LT((link->on_path - Vec3(2.0 * kRadius, 0, 0)).norm(), 1e-9);
+  EXPECT_NEAR(link->length, 2.0 * kRadius, 0.5 * kRadius);
+  const std::optional<BranchLink> passing = link_to_stem(-4.0 * kRadius);
+  EXPECT_TRUE(!passing || passing->cost > link->cost + 2.0);
+}
+
+TEST_F(BranchJoining, AnArmIsLedByAHiddenForkToTheStem) {
+  std::vector<TubePath> paths = {path({{2.0 * kRadius, 0, 0}, {0.15, 0, 0}}),
+                                 path({{0, 2.0 * kRadius, 0}, {0, 0.15, 0}})};
+  const auto tubes = join_branches(paths, kRadius, occlusion(), 0.3).tubes;
+  ASSERT_EQ(tubes.size(), 1u);
+  EXPECT_NEAR(tubes[0].length(), 0.3, 0.5 * kRadius);
 }
 
 }  // namespace

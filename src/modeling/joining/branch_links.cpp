@@ -76,47 +76,83 @@ Surroundings surroundings_of(const std::vector<TubePiece>& paths) {
           .chance_cost = -std::log(4.0 * radius * std::numbers::pi / 2.0 * line_density)};
 }
 
+/// A place of another path, or straight ahead of that path's end.
+struct Side {
+  Vec3 place;
+  Vec3 on_path;           ///< the same place, or the end
+  double ahead = 0.0;     ///< metres from the end
+  double variance = 0.0;  ///< of the place, m^2 an axis
+};
+
+/// As in join_candidates.cpp, a direction that walks at random with variance q a metre is off by q D^3 / 3 an axis after a
+/// length D.
+double variance_ahead(const PieceEnd& end, double length, double bending_rate) {
+  return (bending_rate * length / 3.0 + end.direction_variance) * length * length;
+}
+
 /// -log of the likelihood ratio of "the end leads to the other path's place" to "that path passes there by chance", where
 /// as many ends out of sight lead to another path of their tube as do not.
-/// As in join_candidates.cpp, a direction that walks at random with variance q a metre is off by q D^3 / 3 an axis after
-/// a length D. Of the two axes only the one across both counts, since the branch may start anywhere along the other
-/// path. Tails are Student's t with 3 degrees of freedom (in 1 dimension, log norm log(2 / (pi sqrt(3)))).
-double side_cost(const PieceEnd& end, const Vec3& place, const Surroundings& around) {
-  const Vec3 chord = place - end.position;
+/// Of the two axes only the one across both counts, since the branch may start anywhere along the other path. Tails are
+/// Student's t with 3 degrees of freedom (in 1 dimension, log norm log(2 / (pi sqrt(3)))).
+double side_cost(const PieceEnd& end, const Side& side, const Surroundings& around) {
+  const Vec3 chord = side.place - end.position;
   const double length = std::max(chord.norm(), around.radius);
   const double ahead = chord.dot(end.outward);
   const double off = ahead > 0.0 ? (chord - ahead * end.outward).norm() : chord.norm();
   const double fit = around.radius / 4.0;
-  const double variance = (around.bending_rate * length / 3.0 + end.direction_variance) * length * length + fit * fit;
+  const double variance = variance_ahead(end, length, around.bending_rate) + side.variance + fit * fit;
   constexpr double kLogNorm = -1.0009;
   const double branch = 2.0 * std::log1p(off * off / (3.0 * variance)) - kLogNorm + 0.5 * std::log(variance);
-  return branch + length / (4.0 * around.radius) - around.chance_cost;
+  return branch + (length + side.ahead) / (4.0 * around.radius) - around.chance_cost;
+}
+
+/// Places half a radius apart on the path, and straight ahead of its ends as far as nothing is seen: a fork may be hidden.
+std::vector<Side> sides_of(const TubePiece& path, const PieceEnd& first, const PieceEnd& last,
+                           const Surroundings& around) {
+  const double step = around.radius / 2.0;
+  std::vector<Side> sides;
+  for (std::size_t k = 0; k + 1 < path.nodes.size(); ++k) {
+    const Vec3 along = path.nodes[k + 1] - path.nodes[k];
+    const int steps = static_cast<int>(along.norm() / step) + 1;
+    for (int i = 0; i <= steps; ++i) {
+      const Vec3 place = path.nodes[k] + double(i) / steps * along;
+      sides.push_back({.place = place, .on_path = place});
+    }
+  }
+  for (const PieceEnd* end : {&first, &last}) {
+    if (end->seen_free >= 0.5) continue;
+    const double reach = std::min(end->hidden_reach + around.radius, kReach * around.radius);
+    for (double ahead = step; ahead <= reach; ahead += step)
+      sides.push_back({.place = end->position + ahead * end->outward,
+                       .on_path = end->position,
+                       .ahead = ahead,
+                       .variance = variance_ahead(*end, ahead, around.bending_rate)});
+  }
+  return sides;
 }
 
 /// The likeliest place of the other path, as far as its shape says.
-std::optional<BranchLink> likeliest_side(const PieceEnd& end, const TubePiece& other, const Surroundings& around) {
+std::optional<BranchLink> likeliest_side(const PieceEnd& end, const std::vector<Side>& sides,
+                                         const Surroundings& around) {
   std::optional<BranchLink> best;
-  for (std::size_t k = 0; k + 1 < other.nodes.size(); ++k) {
-    const Vec3 along = other.nodes[k + 1] - other.nodes[k];
-    const int steps = static_cast<int>(along.norm() / (around.radius / 2.0)) + 1;
-    for (int i = 0; i <= steps; ++i) {
-      const Vec3 place = other.nodes[k] + double(i) / steps * along;
-      const double length = (place - end.position).norm();
-      if (length > kReach * around.radius) continue;
-      const double cost = side_cost(end, place, around);
-      if (!best || cost < best->cost) best = {.place = place, .length = length, .cost = cost};
-    }
+  for (const Side& side : sides) {
+    const double length = (side.place - end.position).norm();
+    if (length > kReach * around.radius) continue;
+    const double cost = side_cost(end, side, around);
+    if (!best || cost < best->cost)
+      best = {.place = side.place, .on_path = side.on_path, .length = length, .cost = cost};
   }
   return best;
 }
 
-std::optional<BranchLink> side_link(const PieceEnd& end, const TubePiece& other, const OcclusionTest& occlusion,
-                                    const Surroundings& around, double cost_limit) {
+std::optional<BranchLink> side_link(const PieceEnd& end, const TubePiece& other, const std::vector<Side>& sides,
+                                    const OcclusionTest& occlusion, const Surroundings& around, double cost_limit) {
   // Fits are off by less than a quarter of a radius, so no flat end seems to lie nearer than the rest.
   const auto on_side = place_on_side(end.position, end.outward, other.nodes, around.radius);
   if (on_side && (*on_side - end.position).norm() <= 0.75 * around.radius)
-    return BranchLink{.place = *on_side, .length = (*on_side - end.position).norm(), .cost = kOnSideCost};
-  auto link = likeliest_side(end, other, around);
+    return BranchLink{
+        .place = *on_side, .on_path = *on_side, .length = (*on_side - end.position).norm(), .cost = kOnSideCost};
+  auto link = likeliest_side(end, sides, around);
   if (!link) return std::nullopt;
   link->cost += kEmptyLinkCost * end.seen_free;
   if (link->cost >= cost_limit) return std::nullopt;
@@ -166,15 +202,17 @@ std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, c
   std::vector<BranchLink> links;
   if (paths.empty()) return links;
   const Surroundings around = surroundings_of(paths);
-  for (std::uint32_t end = 0; end < ends.size(); ++end)
-    for (std::uint32_t other = 0; other < paths.size(); ++other) {
+  for (std::uint32_t other = 0; other < paths.size(); ++other) {
+    const std::vector<Side> sides = sides_of(paths[other], ends[2 * other], ends[2 * other + 1], around);
+    for (std::uint32_t end = 0; end < ends.size(); ++end) {
       if (other == end / 2) continue;
-      auto link = side_link(ends[end], paths[other], occlusion, around, cost_limit);
+      auto link = side_link(ends[end], paths[other], sides, occlusion, around, cost_limit);
       if (!link) continue;
       link->end = end;
       link->other = other;
       links.push_back(*link);
     }
+  }
   const JoinLimits limits{.cost = cost_limit, .joins_per_end = kJoinsPerEnd};
   for (const JoinCandidate& join :
        find_join_candidates(paths, ends, find_possible_joins(paths, ends, occlusion, around.bending_rate, limits.cost),
@@ -183,6 +221,7 @@ std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, c
                      .other = join.end_b / 2,
                      .other_end = join.end_b,
                      .place = ends[join.end_b].position,
+                     .on_path = ends[join.end_b].position,
                      .length = polyline_length(join.bridge),
                      .cost = join.cost});
   std::sort(links.begin(), links.end(), [](const BranchLink& a, const BranchLink& b) { return a.cost < b.cost; });

@@ -16,10 +16,11 @@ struct BranchLink {
   std::uint32_t end = 0;
   std::uint32_t other = 0;  ///< path that it leads to
   std::optional<std::uint32_t> other_end =
-      {};                     ///< where it goes on as that path; else it branches off that path's side
-  Vec3 place = Vec3::Zero();  ///< where it meets the other path, metres
-  double length = 0.0;        ///< from the end to the place, metres
-  double cost = 0.0;          ///< nats: -log of how much likelier the scan is with the link than without
+      {};                       ///< where it goes on as that path; else it branches off that path's side
+  Vec3 place = Vec3::Zero();    ///< where it meets the other path, or that path's way straight on out of sight, metres
+  Vec3 on_path = Vec3::Zero();  ///< the same place, or the end that the way straight on leads from
+  double length = 0.0;          ///< from the end to the place, metres
+  double cost = 0.0;            ///< nats: -log of how much likelier the scan is with the link than without
 };
 
 /// Where a path that ends at `tip`, leading `outward` (unit), meets the path through `nodes` as a branch does: it ends

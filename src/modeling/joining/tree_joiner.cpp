@@ -27,9 +27,13 @@ constexpr ForestSearch kThorough{.trees_per_path = 1000, .cover_nodes = 2000};
 
 void lead_up(TubePath& path, const BranchLink& link, double odds) {
   const bool last = link.end % 2 == 1;
-  path.nodes.insert(last ? path.nodes.end() : path.nodes.begin(), link.place);
-  path.bridged.insert(last ? path.bridged.end() : path.bridged.begin(), true);
-  path.bridge_odds.insert(last ? path.bridge_odds.end() : path.bridge_odds.begin(), odds);
+  std::vector<Vec3> way = {link.place};
+  if (link.on_path != link.place) way.push_back(link.on_path);
+  for (const Vec3& node : way) {
+    path.nodes.insert(last ? path.nodes.end() : path.nodes.begin(), node);
+    path.bridged.insert(last ? path.bridged.end() : path.bridged.begin(), true);
+    path.bridge_odds.insert(last ? path.bridge_odds.end() : path.bridge_odds.begin(), odds);
+  }
 }
 
 }  // namespace
