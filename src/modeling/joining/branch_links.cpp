@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 namespace tubebin::modeling {
@@ -145,25 +146,77 @@ std::optional<BranchLink> likeliest_side(const PieceEnd& end, const std::vector<
   return best;
 }
 
-std::optional<BranchLink> side_link(const PieceEnd& end, const TubePiece& other, const std::vector<Side>& sides,
-                                    const OcclusionTest& occlusion, const Surroundings& around, double cost_limit) {
+/// What the end's and the path's shapes say of a link.
+std::optional<BranchLink> link_by_shape(const PieceEnd& end, const TubePiece& other, const std::vector<Side>& sides,
+                                        const Surroundings& around) {
   // Fits are off by less than a quarter of a radius, so no flat end seems to lie nearer than the rest.
   const auto on_side = place_on_side(end.position, end.outward, other.nodes, around.radius);
   if (on_side && (*on_side - end.position).norm() <= 0.75 * around.radius)
     return BranchLink{
         .place = *on_side, .on_path = *on_side, .length = (*on_side - end.position).norm(), .cost = kOnSideCost};
   auto link = likeliest_side(end, sides, around);
-  if (!link) return std::nullopt;
-  link->cost += kEmptyLinkCost * end.seen_free;
-  if (link->cost >= cost_limit) return std::nullopt;
-  const double samples = std::max(link->length / (2.0 * around.radius), 1.0);
-  link->cost +=
-      kEmptyLinkCost * samples * occlusion.empty_part(line_between(end.position, link->place, around.radius), 1.0);
-  if (link->cost >= cost_limit) return std::nullopt;
-  const double seen_through = side_seen_through(end.position, link->place, other, occlusion);
-  link->cost += kEmptyLinkCost * std::min(seen_through / kSeenThroughOnce, 1.0);
-  return link->cost < cost_limit ? link : std::nullopt;
+  if (link) link->cost += kEmptyLinkCost * end.seen_free;
+  return link;
 }
+
+/// Adds to the link's cost what the scan shows of its way, up to the limit.
+void add_evidence(const PieceEnd& end, const TubePiece& other, const OcclusionTest& occlusion, double cost_limit,
+                  BranchLink& link) {
+  if (link.cost == kOnSideCost) return;  // so near that there is no way
+  const double radius = other.radius, samples = std::max(link.length / (2.0 * radius), 1.0);
+  link.cost += kEmptyLinkCost * samples * occlusion.empty_part(line_between(end.position, link.place, radius), 1.0);
+  if (link.cost >= cost_limit) return;
+  const double seen_through = side_seen_through(end.position, link.place, other, occlusion);
+  link.cost += kEmptyLinkCost * std::min(seen_through / kSeenThroughOnce, 1.0);
+}
+
+bool is_cheaper(const BranchLink& a, const BranchLink& b) { return a.cost < b.cost; }
+
+/// Finds an end's links to the sides of other paths.
+class SideLinks {
+ public:
+  SideLinks(const std::vector<TubePiece>& paths, const std::vector<PieceEnd>& ends, const OcclusionTest& occlusion,
+            const Surroundings& around)
+      : paths_(paths), ends_(ends), occlusion_(occlusion), around_(around) {
+    for (std::size_t p = 0; p < paths.size(); ++p)
+      sides_.push_back(sides_of(paths[p], ends[2 * p], ends[2 * p + 1], around));
+  }
+
+  /// The cheapest below the limit, `most` of them.
+  std::vector<BranchLink> of(std::uint32_t end, double cost_limit, std::size_t most) const {
+    std::vector<BranchLink> links;
+    for (BranchLink& link : likely_by_shape(end, cost_limit)) {
+      // Evidence only adds to what further ones cost.
+      if (links.size() == most && links.back().cost <= link.cost) break;
+      add_evidence(ends_[end], paths_[link.other], occlusion_, cost_limit, link);
+      if (link.cost >= cost_limit) continue;
+      links.insert(std::ranges::upper_bound(links, link, is_cheaper), link);
+      if (links.size() > most) links.pop_back();
+    }
+    return links;
+  }
+
+ private:
+  std::vector<BranchLink> likely_by_shape(std::uint32_t end, double cost_limit) const {
+    std::vector<BranchLink> links;
+    for (std::uint32_t other = 0; other < paths_.size(); ++other) {
+      if (other == end / 2) continue;
+      auto link = link_by_shape(ends_[end], paths_[other], sides_[other], around_);
+      if (!link || link->cost >= cost_limit) continue;
+      link->end = end;
+      link->other = other;
+      links.push_back(*link);
+    }
+    std::ranges::sort(links, is_cheaper);
+    return links;
+  }
+
+  const std::vector<TubePiece>& paths_;
+  const std::vector<PieceEnd>& ends_;
+  const OcclusionTest& occlusion_;
+  const Surroundings& around_;
+  std::vector<std::vector<Side>> sides_;
+};
 
 }  // namespace
 
@@ -198,22 +251,14 @@ bool show_branches(const std::vector<TubePiece>& pieces, const std::vector<Piece
 
 std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, const std::vector<PieceEnd>& ends,
                                           const OcclusionTest& occlusion, double cost_limit) {
-  constexpr std::size_t kJoinsPerEnd = 4;
+  constexpr std::size_t kLinksPerEnd = 4;  // to sides, and as many joins
   std::vector<BranchLink> links;
   if (paths.empty()) return links;
   const Surroundings around = surroundings_of(paths);
-  for (std::uint32_t other = 0; other < paths.size(); ++other) {
-    const std::vector<Side> sides = sides_of(paths[other], ends[2 * other], ends[2 * other + 1], around);
-    for (std::uint32_t end = 0; end < ends.size(); ++end) {
-      if (other == end / 2) continue;
-      auto link = side_link(ends[end], paths[other], sides, occlusion, around, cost_limit);
-      if (!link) continue;
-      link->end = end;
-      link->other = other;
-      links.push_back(*link);
-    }
-  }
-  const JoinLimits limits{.cost = cost_limit, .joins_per_end = kJoinsPerEnd};
+  const SideLinks side_links(paths, ends, occlusion, around);
+  for (std::uint32_t end = 0; end < ends.size(); ++end)
+    std::ranges::copy(side_links.of(end, cost_limit, kLinksPerEnd), std::back_inserter(links));
+  const JoinLimits limits{.cost = cost_limit, .joins_per_end = kLinksPerEnd};
   for (const JoinCandidate& join :
        find_join_candidates(paths, ends, find_possible_joins(paths, ends, occlusion, around.bending_rate, limits.cost),
                             occlusion, around.bending_rate, limits))
@@ -224,7 +269,7 @@ std::vector<BranchLink> find_branch_links(const std::vector<TubePiece>& paths, c
                      .on_path = ends[join.end_b].position,
                      .length = polyline_length(join.bridge),
                      .cost = join.cost});
-  std::sort(links.begin(), links.end(), [](const BranchLink& a, const BranchLink& b) { return a.cost < b.cost; });
+  std::ranges::sort(links, is_cheaper);
   return links;
 }
 

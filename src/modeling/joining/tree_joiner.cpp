@@ -23,7 +23,7 @@ constexpr double kNoLengthCost = 3.0;
 
 /// Roughly to tell lengths apart, thoroughly once the length is known.
 constexpr ForestSearch kRough{.trees_per_path = 20, .cover_nodes = 50};
-constexpr ForestSearch kThorough{.trees_per_path = 1000, .cover_nodes = 2000};
+constexpr ForestSearch kThorough{.trees_per_path = 300, .cover_nodes = 2000};
 
 void lead_up(TubePath& path, const BranchLink& link, double odds) {
   const bool last = link.end % 2 == 1;
