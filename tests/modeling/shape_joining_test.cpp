@@ -76,6 +76,18 @@ TEST(CommonShape, IsThatOfPartsBentAlike) {
   EXPECT_TRUE(possible_shapes(whole, pieces).empty());
 }
 
+TEST(CommonShape, EndsWhereOneTubeAloneLeadsOn) {
+  std::vector<Vec3> into_another = moved(kU, turned(40.0, {0.5, 0, 0}));
+  const Vec3 end = into_another.back();
+  for (const Vec3& beyond : {Vec3(0.04, 0.02, 0.03), Vec3(0.06, 0.07, 0.05)}) into_another.push_back(end + beyond);
+  const std::vector<TubePiece> pieces = {piece_along(into_another), piece_along(moved(kU, turned(80.0, {0, 0.5, 0}))),
+                                         without_first_corner(turned(200.0, {-0.5, 0, 0}), 0.05)[1]};
+  const std::vector<std::vector<Vec3>> tubes = {into_another};
+  const auto shapes = possible_shapes(tubes, pieces);
+  ASSERT_EQ(shapes.size(), 1u);
+  EXPECT_NEAR(polyline_length(shapes.front()), kLength, 3.0 * kRadius);
+}
+
 TEST(CommonShape, TubesOfRandomBendsAndStraightOnesHaveNone) {
   Random random(7);
   std::vector<std::vector<Vec3>> bent, straight;

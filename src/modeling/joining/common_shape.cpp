@@ -23,11 +23,17 @@ bool has_same_chords(std::span<const Vec3> a, std::span<const Vec3> b, double ra
          std::abs(chord(a, middle, last) - chord(b, middle, last)) < 2.0 * radius;
 }
 
-/// Whether the piece's samples lie on a part of the shape. Of two curves by chance alike, the more they bend the fewer: a
+/// Of a curve.
+struct Part {
+  std::size_t first = 0, end = 0;  ///< samples; the end is not in it
+};
+
+/// The parts of the shape that the piece's samples lie on. Of two curves by chance alike, the more they bend the fewer: a
 /// twelfth of the bend is what parts of one kind agree to.
-bool lies_on(std::vector<Vec3> piece, const std::vector<Vec3>& shape, double radius) {
+std::vector<Part> parts_under(std::vector<Vec3> piece, const std::vector<Vec3>& shape, double radius) {
   const double agreed = std::min(radius / 2.0, sagitta(piece) / 12.0);
   const auto length = static_cast<std::ptrdiff_t>(piece.size()), all = static_cast<std::ptrdiff_t>(shape.size());
+  std::vector<Part> parts;
   for (const bool is_reversed : {false, true}) {
     if (is_reversed) std::ranges::reverse(piece);
     for (std::ptrdiff_t first = -kEndSlack; first + length <= all + kEndSlack; first += kEndSlack) {
@@ -38,10 +44,15 @@ bool lies_on(std::vector<Vec3> piece, const std::vector<Vec3>& shape, double rad
       const Pose motion = best_motion(own, part);
       // Samples that slide along the other curve come nearer to it, but no two and a half times as near.
       if (mean_squared_distance(own, part, motion) > std::pow(2.5 * agreed, 2)) continue;
-      if (distance_apart(piece, shape, first, motion) < agreed) return true;
+      if (distance_apart(piece, shape, first, motion) >= agreed) continue;
+      parts.push_back({static_cast<std::size_t>(inside), static_cast<std::size_t>(end)});
     }
   }
-  return false;
+  return parts;
+}
+
+bool lies_on(const std::vector<Vec3>& piece, const std::vector<Vec3>& shape, double radius) {
+  return !parts_under(piece, shape, radius).empty();
 }
 
 struct Curve {
@@ -66,6 +77,13 @@ std::vector<Curve> bent_pieces(std::span<const TubePiece> pieces, double radius)
   return bent;
 }
 
+/// The parts of the shape that lie on the piece or under it.
+std::vector<Part> shared_parts(const Curve& shape, const Curve& piece, double radius) {
+  if (piece.samples.size() <= shape.samples.size()) return parts_under(piece.samples, shape.samples, radius);
+  if (lies_on(shape.samples, piece.samples, radius)) return {{0, shape.samples.size()}};
+  return {};
+}
+
 /// How many tubes of this shape the pieces that lie on it make up, ends that fits miss left out, where these are two fifths of
 /// those that are at least half as long as it; else none. It lies on pieces that go over to another tube.
 double tubes_of_shape(const Curve& shape, const std::vector<Curve>& pieces, double radius) {
@@ -73,11 +91,29 @@ double tubes_of_shape(const Curve& shape, const std::vector<Curve>& pieces, doub
   for (const Curve& piece : pieces) {
     if (piece.length < shape.length / 2.0) continue;
     all += piece.length;
-    const auto& [shorter, longer] =
-        std::minmax(shape, piece, [](const Curve& a, const Curve& b) { return a.samples.size() < b.samples.size(); });
-    if (lies_on(shorter.samples, longer.samples, radius)) explained += std::min(piece.length, shape.length);
+    if (!shared_parts(shape, piece, radius).empty()) explained += std::min(piece.length, shape.length);
   }
   return explained >= 0.4 * all ? explained / shape.length : 0.0;
+}
+
+/// The longest part of the curve that two pieces show: from where it goes over to another tube, its own one stands alone.
+Curve shown_twice(const Curve& curve, const std::vector<Curve>& pieces, double radius) {
+  std::vector<int> pieces_at(curve.samples.size(), 0);
+  for (const Curve& piece : pieces) {
+    std::vector<bool> is_shown(pieces_at.size(), false);
+    for (const Part& part : shared_parts(curve, piece, radius))
+      for (std::size_t k = part.first; k < part.end; ++k) is_shown[k] = true;
+    for (std::size_t k = 0; k < is_shown.size(); ++k) pieces_at[k] += is_shown[k];
+  }
+  Part longest;
+  for (std::size_t first = 0, k = 0; k < pieces_at.size(); ++k) {
+    if (pieces_at[k] < 2) first = k + 1;
+    else if (k + 1 - first > longest.end - longest.first) longest = {first, k + 1};
+  }
+  Curve part{.samples = {curve.samples.begin() + static_cast<std::ptrdiff_t>(longest.first),
+                         curve.samples.begin() + static_cast<std::ptrdiff_t>(longest.end)}};
+  part.length = polyline_length(part.samples);
+  return part;
 }
 
 }  // namespace
@@ -92,8 +128,10 @@ std::vector<std::vector<Vec3>> possible_shapes(std::span<const std::vector<Vec3>
   std::vector<Curve> common;
   double most = 0.0;
   for (const std::vector<Vec3>& nodes : tubes) {
-    Curve shape = smoothed(nodes, radius);
-    if (sagitta(shape.samples) < 4.0 * radius) continue;
+    const Curve tube = smoothed(nodes, radius);
+    if (sagitta(tube.samples) < 4.0 * radius) continue;
+    Curve shape = shown_twice(tube, bent, radius);
+    if (shape.samples.empty() || sagitta(shape.samples) < 4.0 * radius) continue;
     const double made_up = tubes_of_shape(shape, bent, radius);
     most = std::max(most, made_up);
     if (made_up >= kOneAndMore) common.push_back(std::move(shape));
