@@ -28,12 +28,12 @@ struct Part {
   std::size_t first = 0, end = 0;  ///< samples; the end is not in it
 };
 
-/// The parts of the shape that the piece's samples lie on. Of two curves by chance alike, the more they bend the fewer: a
-/// twelfth of the bend is what parts of one kind agree to.
-std::vector<Part> parts_under(std::vector<Vec3> piece, const std::vector<Vec3>& shape, double radius) {
+/// The parts of the shape that the piece's samples lie on, until one is `enough`; whether one is. Of two curves by chance alike,
+/// the more they bend the fewer: a twelfth of the bend is what parts of one kind agree to.
+template <typename Enough>
+bool find_parts_under(std::vector<Vec3> piece, const std::vector<Vec3>& shape, double radius, const Enough& enough) {
   const double agreed = std::min(radius / 2.0, sagitta(piece) / 12.0);
   const auto length = static_cast<std::ptrdiff_t>(piece.size()), all = static_cast<std::ptrdiff_t>(shape.size());
-  std::vector<Part> parts;
   for (const bool is_reversed : {false, true}) {
     if (is_reversed) std::ranges::reverse(piece);
     for (std::ptrdiff_t first = -kEndSlack; first + length <= all + kEndSlack; first += kEndSlack) {
@@ -45,14 +45,14 @@ std::vector<Part> parts_under(std::vector<Vec3> piece, const std::vector<Vec3>& 
       // Samples that slide along the other curve come nearer to it, but no two and a half times as near.
       if (mean_squared_distance(own, part, motion) > std::pow(2.5 * agreed, 2)) continue;
       if (distance_apart(piece, shape, first, motion) >= agreed) continue;
-      parts.push_back({static_cast<std::size_t>(inside), static_cast<std::size_t>(end)});
+      if (enough(Part{static_cast<std::size_t>(inside), static_cast<std::size_t>(end)})) return true;
     }
   }
-  return parts;
+  return false;
 }
 
 bool lies_on(const std::vector<Vec3>& piece, const std::vector<Vec3>& shape, double radius) {
-  return !parts_under(piece, shape, radius).empty();
+  return find_parts_under(piece, shape, radius, [](const Part&) { return true; });
 }
 
 struct Curve {
@@ -77,11 +77,10 @@ std::vector<Curve> bent_pieces(std::span<const TubePiece> pieces, double radius)
   return bent;
 }
 
-/// The parts of the shape that lie on the piece or under it.
-std::vector<Part> shared_parts(const Curve& shape, const Curve& piece, double radius) {
-  if (piece.samples.size() <= shape.samples.size()) return parts_under(piece.samples, shape.samples, radius);
-  if (lies_on(shape.samples, piece.samples, radius)) return {{0, shape.samples.size()}};
-  return {};
+/// Whether one lies on the other.
+bool are_alike(const Curve& a, const Curve& b, double radius) {
+  const bool a_is_shorter = a.samples.size() < b.samples.size();
+  return a_is_shorter ? lies_on(a.samples, b.samples, radius) : lies_on(b.samples, a.samples, radius);
 }
 
 /// How many tubes of this shape the pieces that lie on it make up, ends that fits miss left out, where these are two fifths of
@@ -91,18 +90,30 @@ double tubes_of_shape(const Curve& shape, const std::vector<Curve>& pieces, doub
   for (const Curve& piece : pieces) {
     if (piece.length < shape.length / 2.0) continue;
     all += piece.length;
-    if (!shared_parts(shape, piece, radius).empty()) explained += std::min(piece.length, shape.length);
+    if (are_alike(shape, piece, radius)) explained += std::min(piece.length, shape.length);
   }
   return explained >= 0.4 * all ? explained / shape.length : 0.0;
+}
+
+/// Of each sample of the curve: whether the piece lies there.
+std::vector<bool> samples_under(const Curve& piece, const Curve& curve, double radius) {
+  std::vector<bool> is_under(curve.samples.size(), false);
+  if (curve.samples.size() < piece.samples.size()) {
+    is_under.assign(is_under.size(), lies_on(curve.samples, piece.samples, radius));
+    return is_under;
+  }
+  find_parts_under(piece.samples, curve.samples, radius, [&](const Part& part) {
+    for (std::size_t k = part.first; k < part.end; ++k) is_under[k] = true;
+    return false;
+  });
+  return is_under;
 }
 
 /// The longest part of the curve that two pieces show: from where it goes over to another tube, its own one stands alone.
 Curve shown_twice(const Curve& curve, const std::vector<Curve>& pieces, double radius) {
   std::vector<int> pieces_at(curve.samples.size(), 0);
   for (const Curve& piece : pieces) {
-    std::vector<bool> is_shown(pieces_at.size(), false);
-    for (const Part& part : shared_parts(curve, piece, radius))
-      for (std::size_t k = part.first; k < part.end; ++k) is_shown[k] = true;
+    const std::vector<bool> is_shown = samples_under(piece, curve, radius);
     for (std::size_t k = 0; k < is_shown.size(); ++k) pieces_at[k] += is_shown[k];
   }
   Part longest;

@@ -26,14 +26,16 @@ constexpr ForestSearch kRough{.trees_per_path = 20, .cover_nodes = 50};
 constexpr ForestSearch kThorough{.trees_per_path = 300, .cover_nodes = 2000};
 
 void lead_up(TubePath& path, const BranchLink& link, double odds) {
-  const bool last = link.end % 2 == 1;
-  std::vector<Vec3> way = {link.place};
-  if (link.on_path != link.place) way.push_back(link.on_path);
-  for (const Vec3& node : way) {
-    path.nodes.insert(last ? path.nodes.end() : path.nodes.begin(), node);
-    path.bridged.insert(last ? path.bridged.end() : path.bridged.begin(), true);
-    path.bridge_odds.insert(last ? path.bridge_odds.end() : path.bridge_odds.begin(), odds);
-  }
+  const auto lead_to = [&](const Vec3& place) {
+    path.nodes.push_back(place);
+    path.bridged.push_back(true);
+    path.bridge_odds.push_back(odds);
+  };
+  const bool is_first_end = link.end % 2 == 0;
+  if (is_first_end) turn_about(path);
+  lead_to(link.place);
+  if (link.on_path != link.place) lead_to(link.on_path);
+  if (is_first_end) turn_about(path);
 }
 
 }  // namespace
