@@ -235,6 +235,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
     result.tubes = grow_tubes(cloud, projection, result.radius, options, result.seconds, watch);
   }
 
+  set_aside_faces(scene);
   round_tubes(result.tubes);
   PointLabels labels = label_points(cloud.points, result.tubes, background);
   const auto label_again = [&] {
@@ -259,6 +260,7 @@ ModelingResult label_tubes(const ModelingInput& told, std::vector<TubeModel> tub
   result.tubes = std::move(tubes);
   FilteredScene scene = filter_scene(told, options);
   result.found = scene.found;
+  set_aside_faces(scene);
   label(scene, label_points(scene.cloud.points, result.tubes, scene.background), options, result);
   return result;
 }

@@ -34,6 +34,9 @@ struct FilteredCloud {
 FilteredCloud filter(const ModelingInput& input, const ViewProjection& projection, std::vector<std::uint32_t> indices,
                      const FilteringOptions& options, std::uint64_t seed);
 
+/// The cloud's points at `places` alone; without normals.
+FilteredCloud selected(const FilteredCloud& cloud, const std::vector<std::uint32_t>& places);
+
 /// Where the scanner stood that saw most of the points at `indices`, metres. `first`: of the projection.
 Vec3 viewpoint_of(const FilteredCloud& cloud, std::span<const std::uint32_t> indices, const ViewProjection& first);
 

@@ -106,13 +106,7 @@ Segment unexplained_points(const std::vector<cloud::Point>& points, const std::v
 }
 
 FilteredCloud without_pieces(const FilteredCloud& cloud, const std::vector<TubePiece>& pieces) {
-  FilteredCloud rest{.source = {}, .points = {}, .normals = {}, .spacing = cloud.spacing, .alone = cloud.alone};
-  for (const std::uint32_t i : unexplained_points(cloud.points, pieces, cloud.spacing)) {
-    rest.source.push_back(cloud.source[i]);
-    rest.points.push_back(cloud.points[i]);
-    if (!cloud.viewpoints.empty()) rest.viewpoints.push_back(cloud.viewpoints[i]);
-  }
-  return rest;
+  return selected(cloud, unexplained_points(cloud.points, pieces, cloud.spacing));
 }
 
 void drop_explained_pieces(std::vector<TubePiece>& pieces, const std::vector<cloud::Point>& points, double spacing) {

@@ -13,7 +13,6 @@ namespace tubebin::modeling {
 namespace {
 
 constexpr std::size_t kSample = 40000, kDenseSample = 300000;
-constexpr double kLean = 0.26;      ///< the sine of 15 degrees
 constexpr double kAlong = 0.985;    ///< the cosine of 10 degrees
 constexpr double kOverhang = 0.02;  ///< metres that a wall may reach beyond where it should end
 

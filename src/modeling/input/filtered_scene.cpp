@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "modeling/input/bin_faces.hpp"
 #include "modeling/input/bin_finding.hpp"
 #include "modeling/input/bin_pose.hpp"
 #include "modeling/input/bin_rim.hpp"
@@ -196,6 +197,20 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
   scene.found.noise_smoothed = noise;
   scene.measured = std::move(measured);
   return scene;
+}
+
+void set_aside_faces(FilteredScene& scene) {
+  Background& background = scene.background;
+  if (!scene.found.bin || scene.input.bin) return;
+  const std::vector<std::uint32_t> on_faces = points_on_faces(*scene.found.bin, background.regions, scene.input.points,
+                                                              background.foreground, background.spacing);
+  move_points(on_faces, background.foreground, background.set_aside);
+  const auto is_on_face = [&](std::uint32_t i) { return std::ranges::binary_search(on_faces, i); };
+  std::vector<std::uint32_t> left;
+  for (std::uint32_t k = 0; k < scene.cloud.source.size(); ++k)
+    if (!is_on_face(scene.cloud.source[k])) left.push_back(k);
+  scene.cloud = selected(scene.cloud, left);
+  std::erase_if(scene.cloud.alone, is_on_face);
 }
 
 }  // namespace tubebin::modeling

@@ -131,6 +131,16 @@ FilteredCloud filter(const ModelingInput& input, const ViewProjection& projectio
   return options.remove_outliers ? without_lone_points(input, projection, cloud) : cloud;
 }
 
+FilteredCloud selected(const FilteredCloud& cloud, const std::vector<std::uint32_t>& places) {
+  FilteredCloud part{.source = {}, .points = {}, .normals = {}, .spacing = cloud.spacing, .alone = cloud.alone};
+  for (const std::uint32_t i : places) {
+    part.source.push_back(cloud.source[i]);
+    part.points.push_back(cloud.points[i]);
+    if (!cloud.viewpoints.empty()) part.viewpoints.push_back(cloud.viewpoints[i]);
+  }
+  return part;
+}
+
 Vec3 viewpoint_of(const FilteredCloud& cloud, std::span<const std::uint32_t> indices, const ViewProjection& first) {
   if (cloud.viewpoints.empty() || indices.empty()) return first.viewpoint().cast<double>();
   std::vector<std::pair<std::size_t, cloud::Point>> counts;  // points of each viewpoint
