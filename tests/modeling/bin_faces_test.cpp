@@ -5,22 +5,18 @@
 #include <numbers>
 #include <numeric>
 
+#include "modeling/askew_bin.hpp"
+
 namespace tubebin::modeling {
 namespace {
 
 constexpr double kTolerance = 0.0005, kMargin = 0.002;  // metres
 
-const BinFound kBin{
-    .world_from_bin = make_pose(Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())), {0.3, -0.2, 1.1}),
-    .length = 0.3,
-    .width = 0.2,
-    .height = 0.1};
-
 /// A region of 20 mm by 20 mm. Places and directions in the bin's frame, metres.
 FlatRegion region_at(const Vec3& center, const Vec3& normal) {
   FlatRegion region;
-  region.center = kBin.world_from_bin * center;
-  region.plane.normal = kBin.world_from_bin.linear() * normal;
+  region.center = kAskewBin.world_from_bin * center;
+  region.plane.normal = kAskewBin.world_from_bin.linear() * normal;
   region.plane.offset = region.plane.normal.dot(region.center);
   region.half_extents[0] = region.half_extents[1] = 0.01;
   region.tolerance = kTolerance;
@@ -30,11 +26,11 @@ FlatRegion region_at(const Vec3& center, const Vec3& normal) {
 /// Of points given in the bin's frame: whether each lies on a face.
 std::vector<bool> are_on_faces(const std::vector<FlatRegion>& regions, const std::vector<Vec3>& places) {
   std::vector<cloud::Point> points;
-  for (const Vec3& place : places) points.push_back((kBin.world_from_bin * place).cast<float>());
+  for (const Vec3& place : places) points.push_back((kAskewBin.world_from_bin * place).cast<float>());
   std::vector<std::uint32_t> all(points.size());
   std::iota(all.begin(), all.end(), 0U);
   std::vector<bool> are_on(points.size(), false);
-  for (const std::uint32_t i : points_on_faces(kBin, regions, points, all, kMargin)) are_on[i] = true;
+  for (const std::uint32_t i : points_on_faces(kAskewBin, regions, points, all, kMargin)) are_on[i] = true;
   return are_on;
 }
 
@@ -49,7 +45,7 @@ TEST(BinFaces, GoOnBeyondWhatIsSeenOfThemAtOnce) {
 
 TEST(BinFaces, EndAtTheBinsEdgesAndAtTheirPlanes) {
   const std::vector<FlatRegion> regions = {region_at({-0.1, 0.1, 0.05}, -Vec3::UnitY())};
-  const double wide = kBin.length / 2.0 + 0.26 * kBin.height + kMargin;
+  const double wide = kAskewBin.length / 2.0 + 0.26 * kAskewBin.height + kMargin;
   EXPECT_EQ(are_on_faces(regions, {{0.1, 0.1, 0.103}, {wide + 0.001, 0.1, 0.05}, {0.1, 0.0994, 0.05}, {0.1, 0.0, 0.0}}),
             Are({false, false, false, false}));
 }
