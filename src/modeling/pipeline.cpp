@@ -85,14 +85,11 @@ TubeClasses find_classes(const FilteredCloud& cloud, const ViewProjection& proje
 void set_aside_mesh(const std::vector<TubePiece>& wires, FilteredScene& scene, SceneFound& found) {
   if (wires.empty()) return;
   found.wire_radius = wires.front().radius;
-  std::vector<std::uint32_t> before = scene.cloud.source;
-  scene.cloud = without_pieces(scene.cloud, wires);
-  std::vector<std::uint32_t> after = scene.cloud.source, on_wires, all;
-  std::ranges::sort(before);
-  std::ranges::sort(after);
-  std::ranges::set_difference(before, after, std::back_inserter(on_wires));
-  std::ranges::merge(scene.background.set_aside, on_wires, std::back_inserter(all));
-  scene.background.set_aside = std::move(all);
+  std::vector<std::uint32_t> all = scene.cloud.source, left = without_pieces(scene.cloud, wires).source, on_wires;
+  std::ranges::sort(all);
+  std::ranges::sort(left);
+  std::ranges::set_difference(all, left, std::back_inserter(on_wires));
+  set_aside(on_wires, scene);
 }
 
 /// Of points that the tubes were not looked for in.

@@ -31,7 +31,7 @@ std::vector<std::uint32_t> points_on_faces(const BinFound& bin, const std::vecto
   std::vector<std::uint32_t> on_faces;
   std::ranges::copy_if(indices, std::back_inserter(on_faces), [&](std::uint32_t i) {
     const Vec3 p = points[i].cast<double>();
-    const auto is_on = [&](const FlatRegion& face) { return std::abs(face.plane.height(p)) < face.tolerance; };
+    const auto is_on = [&](const FlatRegion& face) { return face.lies_on_plane(p); };
     return std::ranges::any_of(faces, is_on) && box.contains(bin_from_world * p);
   });
   return on_faces;

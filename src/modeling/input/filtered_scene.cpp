@@ -199,18 +199,22 @@ FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& opt
   return scene;
 }
 
-void set_aside_faces(FilteredScene& scene) {
-  Background& background = scene.background;
-  if (!scene.found.bin || scene.input.bin) return;
-  const std::vector<std::uint32_t> on_faces = points_on_faces(*scene.found.bin, background.regions, scene.input.points,
-                                                              background.foreground, background.spacing);
-  move_points(on_faces, background.foreground, background.set_aside);
-  const auto is_on_face = [&](std::uint32_t i) { return std::ranges::binary_search(on_faces, i); };
+void set_aside(const std::vector<std::uint32_t>& indices, FilteredScene& scene) {
+  move_points(indices, scene.background.foreground, scene.background.set_aside);
+  const auto goes = [&](std::uint32_t i) { return std::ranges::binary_search(indices, i); };
   std::vector<std::uint32_t> left;
   for (std::uint32_t k = 0; k < scene.cloud.source.size(); ++k)
-    if (!is_on_face(scene.cloud.source[k])) left.push_back(k);
+    if (!goes(scene.cloud.source[k])) left.push_back(k);
   scene.cloud = selected(scene.cloud, left);
-  std::erase_if(scene.cloud.alone, is_on_face);
+  std::erase_if(scene.cloud.alone, goes);
+}
+
+void set_aside_faces(FilteredScene& scene) {
+  if (!scene.found.bin || scene.input.bin) return;
+  const Background& background = scene.background;
+  set_aside(points_on_faces(*scene.found.bin, background.regions, scene.input.points, background.foreground,
+                            background.spacing),
+            scene);
 }
 
 }  // namespace tubebin::modeling

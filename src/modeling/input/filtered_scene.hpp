@@ -22,7 +22,10 @@ struct FilteredScene {
 /// From where the scanner stood, as far as that is known. Throws IoError where a told bin or the box to crop to holds no point.
 FilteredScene filter_scene(const ModelingInput& told, const ModelingOptions& options);
 
-/// Makes background of the points on the faces of a bin that the cloud shows and nobody told of, between the tubes as well, where
+/// Makes background of the points with these indices, which ascend; in `cloud` they are no more.
+void set_aside(const std::vector<std::uint32_t>& indices, FilteredScene& scene);
+
+/// The same of the points on the faces of a bin that the cloud shows and nobody told of, between the tubes as well, where
 /// these leave too little of a face for a flat region.
 void set_aside_faces(FilteredScene& scene);
 

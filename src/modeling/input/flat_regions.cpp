@@ -230,9 +230,7 @@ FlatRegion flat_region(const Region& region, const FlatBlocks& blocks, const Vec
 
 }  // namespace
 
-bool FlatRegion::holds(const Vec3& point, double margin) const {
-  return std::abs(plane.height(point)) < tolerance && spans(point, margin);
-}
+bool FlatRegion::holds(const Vec3& point, double margin) const { return lies_on_plane(point) && spans(point, margin); }
 
 bool FlatRegion::spans(const Vec3& point, double margin) const {
   const Vec3 offset = point - center;

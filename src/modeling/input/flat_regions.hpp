@@ -1,6 +1,7 @@
 /// What stands around the tubes and is flat: floor, table, walls, rims, boxes, of any pose.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "modeling/input/flat_blocks.hpp"
@@ -26,7 +27,9 @@ struct FlatRegion {
   double tolerance = 0.0;  ///< metres, how far from the plane its points may lie: four standard deviations, and some
   bool is_solid = false;   ///< nothing was measured behind it, nearer than its distance to the points before it
 
-  /// Whether the point lies on the plane as far as noise lets one tell, not farther than `margin` (metres) outside the
+  /// Whether the point lies on the plane as far as noise lets one tell.
+  bool lies_on_plane(const Vec3& point) const { return std::abs(plane.height(point)) < tolerance; }
+  /// The same, and not farther than `margin` (metres) outside the
   /// rectangle.
   bool holds(const Vec3& point, double margin) const;
   /// Whether the point lies before or behind the rectangle, widened by the margin.
