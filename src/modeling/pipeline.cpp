@@ -240,11 +240,16 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
     labels = label_points(scene.cloud.points, result.tubes, scene.background);
   };
   if (options.method == ModelingMethod::centerline) {
-    if (!background.is_known && drop_doubtful(result.tubes, result.lengths, labels.labels, background.is_rough))
-      label_again();
+    std::vector<WeakTube> weak;
+    if (!background.is_known) {
+      const std::size_t before = result.tubes.size();
+      weak = drop_doubtful(result.tubes, result.lengths, labels.labels, background.is_rough);
+      if (result.tubes.size() < before) label_again();
+    }
     if (reach_steep_ends(result.tubes, cloud, labels.labels, projection, scan)) label_again();
     if (reach_seen_ends(result.tubes, cloud.points, labels.labels, cloud.spacing, result.lengths)) label_again();
     if (reach_end_discs(result.tubes, cloud, labels.labels, projection, scan, result.lengths)) label_again();
+    if (restore_unexplained(std::move(weak), result.tubes, result.lengths, labels.labels)) label_again();
   }
   label(scene, std::move(labels), options, result);
   add_doubts(result, !told_radii(options).empty());
