@@ -3,6 +3,8 @@ add_library(tubebin_flags INTERFACE)
 target_compile_options(tubebin_flags INTERFACE -Wall -Wextra -Wconversion $<$<BOOL:${TUBEBIN_WERROR}>:-Werror>)
 # The same seed gives the same bytes on machines that fuse multiply-adds and on those that don't.
 target_compile_options(tubebin_flags INTERFACE -ffp-contract=off)
+# A shared library's functions are inlined as a program's are; nobody puts others in their place.
+target_compile_options(tubebin_flags INTERFACE $<$<BOOL:${TUBEBIN_PYTHON}>:-fno-semantic-interposition>)
 
 # tubebin_module(NAME PUBLIC ... PRIVATE ...): the library tubebin::NAME from all sources below src/NAME/.
 function(tubebin_module name)

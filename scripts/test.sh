@@ -28,7 +28,10 @@ scripts/install_dependencies.sh --tests
 environment=$(scripts/python_environment.sh) ||
   { environment=; echo "No Python packages to be had: tests that compare with them skip." >&2; }
 export PATH="${environment:+$environment/bin:}$PATH"
-cmake --preset "$preset" -DTUBEBIN_WERROR=ON
+options=(-DTUBEBIN_WERROR=ON)
+# The wheel is made of what this build compiles (tests/package/python_wheel.sh).
+[ "$preset" != ci ] || [ -z "$environment" ] || options+=(-DTUBEBIN_PYTHON=ON)
+cmake --preset "$preset" "${options[@]}"
 if [ ${#kinds[@]} -eq 0 ]; then
   build
   ctest --preset "$preset"

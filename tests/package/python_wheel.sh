@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The Python package as a user gets it: the wheel is built, made to carry its libraries, installed into an environment that
 # has numpy alone, and used there. Then python/tests and mypy run on it, and what needs PyTorch where Debian's is installed.
+# A build with TUBEBIN_PYTHON has compiled the wheel's module already; beside another one it is compiled from nothing.
 # Skips (77) where the tools or numpy can't be had.
 # Usage: tests/package/python_wheel.sh BUILD_DIR
 set -euo pipefail
@@ -15,8 +16,10 @@ python3 -m venv "$work/bare"
   { echo "skipped: numpy can't be fetched: $(tail -1 "$work/log")"; exit 77; }
 
 export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
-python3 -m pip wheel --disable-pip-version-check --no-build-isolation --no-deps -C build-dir="$build/python-wheel" \
-  --wheel-dir "$work" "$source" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+compiled=$build/python-wheel
+! grep -q '^TUBEBIN_PYTHON:BOOL=ON' "$build/CMakeCache.txt" || compiled=$build
+python3 -m pip wheel --disable-pip-version-check --no-build-isolation --no-deps -C build-dir="$compiled" \
+  -C cmake.define.TUBEBIN_TESTS="$([ "$compiled" = "$build" ] && echo ON || echo OFF)" --wheel-dir "$work" "$source" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 python3 -m auditwheel repair --wheel-dir "$work/repaired" "$work"/tubebin-*.whl 2> "$work/log" ||
   { cat "$work/log"; exit 1; }
 wheel=$(echo "$work"/repaired/tubebin-*.whl)
