@@ -66,7 +66,9 @@ std::vector<WeakTube> drop_doubtful(std::vector<TubeModel>& tubes, std::vector<d
     const auto& [evidence, points] = found[t];
     const PointEvidence& all = of_radius[tubes[t].radius];
     const bool is_weak = evidence * all.points < least_share(tubes[t], is_rough) * points * all.evidence;
-    const bool goes = is_doubtful(tubes[t].length(), tubes[t].radius, evidence) || (is_weak && is_rough);
+    // Of other things than ground, a weak one says half a nat a point at most; a nearly hidden tube more than one.
+    const bool is_none = is_weak && (is_rough || evidence < points);
+    const bool goes = is_none || is_doubtful(tubes[t].length(), tubes[t].radius, evidence);
     if (goes) dropped.push_back(std::move(tubes[t]));
     else if (is_weak) weak.push_back({.tube = std::move(tubes[t]), .points = points_of(t, labels)});
     else kept.push_back(std::move(tubes[t]));

@@ -15,9 +15,9 @@ struct WeakTube {
   std::vector<std::uint32_t> points;  ///< places of those labelled as its
 };
 
-/// Takes out what is short and of little evidence (is_doubtful) and what is weak; returns the weak, but none where some of the ground
-/// `is_rough`. `labels`: of the points, 0 or 1 + the tube's place; right no longer where a tube is gone. Of the common `lengths`
-/// (metres) those go that only dropped tubes had.
+/// Takes out what is short and of little evidence (is_doubtful) and what is weak; returns those of the weak whose points say more than
+/// a nat each, but none where some of the ground `is_rough`. `labels`: of the points, 0 or 1 + the tube's place; right no longer where
+/// a tube is gone. Of the common `lengths` (metres) those go that only dropped tubes had.
 std::vector<WeakTube> drop_doubtful(std::vector<TubeModel>& tubes, std::vector<double>& lengths,
                                     const std::vector<cloud::Label>& labels, bool is_rough);
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
 #include <utility>
 
 namespace tubebin::modeling {
@@ -19,18 +20,21 @@ std::vector<WeakTube> drop_doubtful(std::vector<TubeModel>& tubes, const std::ve
   return modeling::drop_doubtful(tubes, lengths, labels, is_rough);
 }
 
-TEST(DoubtfulTubes, OneThatSaysLittleAPointBesideOthersOfItsRadiusIsWeakAndOnRoughGroundDropped) {
-  const std::vector<TubeModel> all = {tube_of(0.5, 0.01, 1e5), tube_of(0.6, 0.01, 200.0), tube_of(0.4, 0.01, 1e4),
-                                      tube_of(0.3, 0.02, 200.0)};
+/// A tube of 1e5 nats and one of `evidence`, a thousand points each, and one of another radius.
+std::vector<TubeModel> beside_a_sure_one(double evidence) {
+  return {tube_of(0.5, 0.01, 1e5), tube_of(0.6, 0.01, evidence), tube_of(0.3, 0.02, 200.0)};
+}
+
+TEST(DoubtfulTubes, OneThatSaysLittleAPointBesideOthersOfItsRadiusIsWeak) {
   std::vector<cloud::Label> labels = {0};
-  for (const cloud::Label label : {1, 2, 3, 4}) labels.insert(labels.end(), 1000, label);
-  for (const bool is_rough : {false, true}) {
-    std::vector<TubeModel> tubes = all;
-    const auto weak = drop_doubtful(tubes, labels, is_rough);  // 200 nats are a 170th of the 34 nats a point of this radius
-    EXPECT_EQ(weak.size(), is_rough ? 0u : 1u);
-    ASSERT_EQ(tubes.size(), 3u);
-    EXPECT_NEAR(tubes[1].length(), 0.4, 1e-12);
-    EXPECT_NEAR(tubes[2].radius, 0.02, 1e-12);  // alone with its radius
+  for (const cloud::Label label : {1, 2, 3}) labels.insert(labels.end(), 1000, label);
+  // A fortieth of the mean, 51 nats, is 1.3 nats a point.
+  for (const auto& [evidence, is_rough, left, weak] : std::vector<std::tuple<double, bool, std::size_t, std::size_t>>{
+           {1400.0, false, 3, 0}, {1200.0, false, 2, 1}, {1200.0, true, 2, 0}, {900.0, false, 2, 0}}) {
+    std::vector<TubeModel> tubes = beside_a_sure_one(evidence);
+    EXPECT_EQ(drop_doubtful(tubes, labels, is_rough).size(), weak) << evidence;
+    ASSERT_EQ(tubes.size(), left) << evidence;
+    EXPECT_NEAR(tubes.back().radius, 0.02, 1e-12) << "alone with its radius";
   }
 }
 
