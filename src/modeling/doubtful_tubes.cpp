@@ -78,14 +78,14 @@ std::vector<WeakTube> drop_doubtful(std::vector<TubeModel>& tubes, std::vector<d
   return weak;
 }
 
-bool restore_unexplained(std::vector<WeakTube> weak, std::vector<TubeModel>& tubes, std::vector<double>& lengths,
+bool restore_unexplained(const std::vector<WeakTube>& weak, std::vector<TubeModel>& tubes, std::vector<double>& lengths,
                          const std::vector<cloud::Label>& labels) {
   const std::size_t before = tubes.size();
   std::vector<TubeModel> dropped;
-  for (auto& [tube, points] : weak) {
+  for (const auto& [tube, points] : weak) {
     const auto left = std::ranges::count_if(points, [&](std::uint32_t i) { return labels[i] == 0; });
     const bool is_explained = 2 * static_cast<std::size_t>(left) <= points.size();
-    (is_explained ? dropped : tubes).push_back(std::move(tube));
+    (is_explained ? dropped : tubes).push_back(tube);
   }
   erase_lengths(lengths, dropped, tubes);
   return tubes.size() > before;

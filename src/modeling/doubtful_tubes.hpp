@@ -22,7 +22,7 @@ std::vector<WeakTube> drop_doubtful(std::vector<TubeModel>& tubes, std::vector<d
                                     const std::vector<cloud::Label>& labels, bool is_rough);
 
 /// Appends those again most of whose points are no other tube's by the `labels` since. Returns whether there were any.
-bool restore_unexplained(std::vector<WeakTube> weak, std::vector<TubeModel>& tubes, std::vector<double>& lengths,
+bool restore_unexplained(const std::vector<WeakTube>& weak, std::vector<TubeModel>& tubes, std::vector<double>& lengths,
                          const std::vector<cloud::Label>& labels);
 
 }  // namespace tubebin::modeling

@@ -249,7 +249,7 @@ ModelingResult model_tubes(const ModelingInput& told, const ModelingOptions& opt
     if (reach_steep_ends(result.tubes, cloud, labels.labels, projection, scan)) label_again();
     if (reach_seen_ends(result.tubes, cloud.points, labels.labels, cloud.spacing, result.lengths)) label_again();
     if (reach_end_discs(result.tubes, cloud, labels.labels, projection, scan, result.lengths)) label_again();
-    if (restore_unexplained(std::move(weak), result.tubes, result.lengths, labels.labels)) label_again();
+    if (restore_unexplained(weak, result.tubes, result.lengths, labels.labels)) label_again();
   }
   label(scene, std::move(labels), options, result);
   add_doubts(result, !told_radii(options).empty());
