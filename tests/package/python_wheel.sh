@@ -16,12 +16,16 @@ python3 -m venv "$work/bare"
   { echo "skipped: numpy can't be fetched: $(tail -1 "$work/log")"; exit 77; }
 
 export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
-prefix=$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$build/CMakeCache.txt")
-compiled=$build/python-wheel
-! grep -q '^TUBEBIN_PYTHON:BOOL=ON' "$build/CMakeCache.txt" || compiled=$build
-python3 -m pip wheel --disable-pip-version-check --no-build-isolation --no-deps -C build-dir="$compiled" \
-  -C cmake.define.TUBEBIN_TESTS="$([ "$compiled" = "$build" ] && echo ON || echo OFF)" --wheel-dir "$work" "$source" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-[ "$compiled" != "$build" ] || cmake -DCMAKE_INSTALL_PREFIX="$prefix" "$build" > "$work/log"  # which the wheel's folder took the place of
+compiled=(-C build-dir="$build/python-wheel")
+prefix=
+if grep -q '^TUBEBIN_PYTHON:BOOL=ON' "$build/CMakeCache.txt"; then
+  compiled=(-C build-dir="$build" -C cmake.define.TUBEBIN_TESTS=ON)
+  prefix=$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$build/CMakeCache.txt")
+fi
+python3 -m pip wheel --disable-pip-version-check --no-build-isolation --no-deps "${compiled[@]}" \
+  --wheel-dir "$work" "$source" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+# The wheel's folder took the prefix' place.
+[ -z "$prefix" ] || cmake -DCMAKE_INSTALL_PREFIX="$prefix" "$build" > "$work/log"
 python3 -m auditwheel repair --wheel-dir "$work/repaired" "$work"/tubebin-*.whl 2> "$work/log" ||
   { cat "$work/log"; exit 1; }
 wheel=$(echo "$work"/repaired/tubebin-*.whl)
